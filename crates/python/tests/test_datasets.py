@@ -292,6 +292,10 @@ def test_bop_has_poses_and_masks(bop):
         np.testing.assert_array_equal(visible, picture["ids"][..., 0] == number + 1)
         assert not (visible & ~mask).any() and visible.sum() == known["px_count_visib"]
         assert known["visib_fract"] == known["px_count_visib"] / known["px_count_all"]
+        rows, columns = visible.nonzero()
+        # As bop_toolkit_lib.misc.calc_2d_bbox has it: the width is that from the first column to the last.
+        box = [columns.min(), rows.min(), np.ptp(columns), np.ptp(rows)] if len(rows) else [-1] * 4
+        assert known["bbox_visib"] == box
         # A valid depth may be that of what hides the object.
         assert known["px_count_valid"] == np.count_nonzero(depth[mask])
         # The points of the visible surface, taken back into the model by the pose, are on its triangles.
@@ -324,9 +328,7 @@ def test_the_bop_toolkit_reads_it(bop):
         own = np.where(mask, distances, 0)
         if visible.any():
             rows, columns = visible.nonzero()
-            # Their box ends before its last column and row.
-            x, y, width, height = known["bbox_visib"]
-            assert [int(side) for side in misc.calc_2d_bbox(columns, rows, SIZE)] == [x, y, width - 1, height - 1]
+            assert [int(side) for side in misc.calc_2d_bbox(columns, rows, SIZE)] == known["bbox_visib"]
             found = visibility.estimate_visib_mask_gt(distances, np.where(visible, own, 0), 15, visib_mode="bop19")
             np.testing.assert_array_equal(found, visible)
 

@@ -688,7 +688,11 @@ def _fitting_scale(depth: ArrayLike) -> float:
 
 
 def _bop_box(box: Box | None) -> list[int]:
-    return [-1, -1, -1, -1] if box is None else list(box)
+    """From the first pixel to the last, as `bop_toolkit_lib.misc.calc_2d_bbox`: one less than the pixels across and down."""
+    if box is None:
+        return [-1, -1, -1, -1]
+    x, y, width, height = box
+    return [x, y, width - 1, height - 1]
 
 
 def _pose(instance: Instance, world_to_camera: _Numbers, model: int) -> dict[str, Any]:
