@@ -20,6 +20,7 @@ mod portable;
 mod reading_order;
 mod registries;
 mod repository;
+mod rooms;
 mod rust_text;
 mod test_suites;
 mod unsafe_code;
@@ -54,6 +55,7 @@ const RULES: &[Rule] = &[
     Rule { name: "directions", check: directions::check },
     Rule { name: "circles", check: circles::check },
     Rule { name: "reading-order", check: reading_order::check },
+    Rule { name: "rooms", check: rooms::check },
     Rule { name: "dependencies", check: dependencies::check },
     Rule { name: "changelog", check: changelog::check },
     Rule { name: "front-page", check: front_page::check },

@@ -1,10 +1,10 @@
 //! Samples in batches, as the queues of subpaths take them.
 
 use super::queued_sample::QueuedSample;
-use crate::camera_rays::CameraRays;
-use crate::failures::SamplePlace;
-use crate::sample_queue::{SampleQueue, SampleSink};
-use crate::task::Context;
+use crate::film::failures::SamplePlace;
+use crate::sampling::camera_rays::CameraRays;
+use crate::sampling::sample_queue::{SampleQueue, SampleSink};
+use crate::sampling::task::Context;
 use bilux_math::{Rgb, Vec2};
 use bilux_scene::Tracer;
 

@@ -1,10 +1,10 @@
 //! Subpaths that have passed nothing but panes since they left a light, or a vertex that samples lights: such a vertex samples the
-//! light [through the panes](crate::through) too.
+//! light [through the panes](crate::walk::through) too.
 //!
 //! No density has the odds of passing a pane, since all techniques pass it.
 
-use crate::emission::Start;
-use crate::task::Context;
+use crate::light::emission::Start;
+use crate::sampling::task::Context;
 use bilux_math::Vec3;
 use bilux_scene::Surface;
 

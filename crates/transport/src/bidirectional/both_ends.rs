@@ -9,10 +9,10 @@ use super::{
     CameraSubpath, Subpath, Vertex, connect_to_camera, crossed, emitted, from_infinity, light_vertices,
     merged,
 };
-use crate::equiangular::EquiangularSample;
-use crate::mis::Partial;
+use crate::media::equiangular::EquiangularSample;
 use crate::photons::Photons;
-use crate::task::Task;
+use crate::sampling::task::Task;
+use crate::techniques::mis::Partial;
 use crate::techniques::{Contribution, PerSet, Step, Tally, Technique, TechniqueCounts};
 use bilux_math::Rgb;
 use bilux_scene::{Ray, TransportMode};

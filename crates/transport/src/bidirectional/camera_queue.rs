@@ -5,9 +5,9 @@ use super::connect::{Connection, Join};
 use super::light_paths::LightPaths;
 use super::queued_sample::QueuedSample;
 use super::{CameraSubpath, Subpath, Vertex};
-use crate::shadow_rays::ShadowRays;
-use crate::task::{Context, Task};
+use crate::sampling::task::{Context, Task};
 use crate::techniques::{Step, Tally, Technique};
+use crate::walk::shadow_rays::ShadowRays;
 use bilux_accel::Hit;
 use bilux_scene::{Ray, Tracer};
 

@@ -3,8 +3,8 @@
 
 use super::connect::Connection;
 use super::{Subpath, Vertex};
-use crate::mis::Partial;
-use crate::task::Task;
+use crate::sampling::task::Task;
+use crate::techniques::mis::Partial;
 use crate::techniques::{Step, Tally, TechniqueCounts};
 use bilux_math::Rgb;
 use bilux_scene::{Ray, TransportMode};
@@ -44,7 +44,7 @@ pub(crate) trait CameraSubpath<const N: usize = 1> {
     /// Merges its last ray with the beams of photons that it crosses in media.
     fn cross(&self, subpath: &Subpath<N>, task: &Task, tally: &mut impl Tally<N>);
 
-    /// Connects the [equiangular points](crate::equiangular) of its last ray with their lights.
+    /// Connects the [equiangular points](crate::media::equiangular) of its last ray with their lights.
     fn equiangular(&self, _subpath: &Subpath<N>, _task: &mut Task, _tally: &mut impl Tally<N>) {}
 
     /// Sends the subpath on; false where it ends.

@@ -1,14 +1,14 @@
 //! How subpaths are connected: with the camera, with a point on a light, or with each other.
 
 use super::vertex::Vertex;
-use crate::emission::light_number;
-use crate::interaction::Interaction;
-use crate::limits::MAX_CONNECTED_ROW;
+use crate::film::limits::MAX_CONNECTED_ROW;
+use crate::light::emission::light_number;
 use crate::media::Passage;
-use crate::segment::Segment;
-use crate::task::{Context, Task};
+use crate::media::interaction::Interaction;
+use crate::sampling::task::{Context, Task};
 use crate::techniques::{Contribution, PerSet, Technique, TechniqueCounts, power_factor};
-use crate::through::Through;
+use crate::walk::segment::Segment;
+use crate::walk::through::Through;
 use bilux_math::{Rgb, Vec2, Vec3, warp};
 use bilux_scene::{Ray, Tracer, TransportMode};
 

@@ -1,10 +1,10 @@
 //! How rays of camera subpaths are merged with the photon beams that they cross in media.
 
 use super::vertex::count;
-use crate::beam::{Beam, Crossing, medium_of};
-use crate::equiangular::{self, Approach, Departure};
-use crate::photon_beams::PhotonBeams;
-use crate::task::Task;
+use crate::media::equiangular::{self, Approach, Departure};
+use crate::photons::beam::{Beam, Crossing, medium_of};
+use crate::photons::beams::PhotonBeams;
+use crate::sampling::task::Task;
 use crate::techniques::{Contribution, Technique, TechniqueCounts};
 use bilux_math::Vec3;
 use bilux_scene::Ray;

@@ -1,10 +1,10 @@
 //! Emitters that a camera subpath hits by chance (s = 0).
 
 use super::Subpath;
-use crate::emission::light_number;
-use crate::equiangular::Approach;
-use crate::mis::Partial;
-use crate::task::Task;
+use crate::light::emission::light_number;
+use crate::media::equiangular::Approach;
+use crate::sampling::task::Task;
+use crate::techniques::mis::Partial;
 use crate::techniques::{Contribution, NO_LIGHT, PerSet, power_factor};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::Surface;

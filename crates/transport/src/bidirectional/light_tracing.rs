@@ -6,7 +6,7 @@ use super::connect::{places_on_film, to_camera};
 use super::light_paths::{LightPaths, light_vertices};
 use super::queued_sample::QueuedSample;
 use crate::media::Media;
-use crate::task::{Context, Task};
+use crate::sampling::task::{Context, Task};
 use crate::techniques::TechniqueCounts;
 use bilux_accel::Hit;
 use bilux_math::{Rgb, Vec2, Vec3};

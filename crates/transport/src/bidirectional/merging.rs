@@ -1,9 +1,9 @@
 //! How a vertex of a camera subpath is merged with the photons around it.
 
 use super::vertex::{Vertex, count, kept_share};
-use crate::interaction::{Interaction, MediumPoint};
+use crate::media::interaction::{Interaction, MediumPoint};
 use crate::photons::Photons;
-use crate::task::Task;
+use crate::sampling::task::Task;
 use crate::techniques::{Contribution, Technique};
 use bilux_math::hash::{mix64, unit_f32};
 use bilux_scene::media::mean;

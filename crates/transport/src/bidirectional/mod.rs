@@ -4,8 +4,8 @@
 //! pair (s, t). All of them are tried, and each is weighted by the balance heuristic against all others
 //! [Veach 1997, 10.2]. A subpath carries the sums over the other techniques along as it grows
 //! [Georgiev 2012, eq. 31 to 48], so a weight costs no more for long paths than for short ones. In words:
-//! [`Partial::d_vcm`](crate::mis::Partial::d_vcm) is how likely a connection to the vertex is, over how likely the random walk is to reach it;
-//! [`Partial::d_vc`](crate::mis::Partial::d_vc) is the same for all vertices before it.
+//! [`Partial::d_vcm`](crate::techniques::mis::Partial::d_vcm) is how likely a connection to the vertex is, over how likely the random walk is to reach it;
+//! [`Partial::d_vc`](crate::techniques::mis::Partial::d_vc) is the same for all vertices before it.
 //!
 //! Densities assume a film of area 1 and one light subpath per camera subpath. They leave out Russian roulette: all
 //! that weights need is to be the same for all techniques.

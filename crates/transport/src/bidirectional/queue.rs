@@ -5,7 +5,7 @@ use super::camera_queue::CameraQueue;
 use super::light_paths::LightPaths;
 use super::queued_sample::QueuedSample;
 use super::{BatchQueue, BothEnds};
-use crate::task::Context;
+use crate::sampling::task::Context;
 use crate::techniques::{Contribution, PixelSum, Step, Tally, Technique};
 use bilux_math::{Rgb, Vec2};
 use bilux_scene::Tracer;
@@ -79,14 +79,14 @@ impl BatchQueue for BothEndsSamples<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::failures::SamplePlace;
+    use crate::film::failures::SamplePlace;
+    use crate::film::window::Window;
     use crate::photons::{MergeCounts, Photons};
-    use crate::settings::RenderSettings;
+    use crate::sampling::splats::IterationSplats;
+    use crate::sampling::task::Task;
+    use crate::schedule::settings::RenderSettings;
     use crate::shapes::{ball, built, integrator, mixed, put, still_life};
-    use crate::splats::IterationSplats;
-    use crate::task::Task;
     use crate::techniques::{PerSet, TechniqueCounts};
-    use crate::window::Window;
     use bilux_math::Vec3;
     use bilux_scene::{SceneBuilder, Spec};
 

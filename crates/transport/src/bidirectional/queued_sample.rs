@@ -1,6 +1,6 @@
 //! A sample that waits in a queue of them.
 
-use crate::task::SampleState;
+use crate::sampling::task::SampleState;
 use bilux_scene::Ray;
 
 /// A sample of the film.

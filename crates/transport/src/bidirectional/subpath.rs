@@ -2,14 +2,14 @@
 
 use super::behind_panes::BehindPanes;
 use super::vertex::{Vertex, count, kept_share};
-use crate::beam::{Beam, Leaving};
-use crate::emission::Start;
-use crate::equiangular::{self, Approach, Lit};
-use crate::interaction::Interaction;
+use crate::light::emission::Start;
+use crate::media::equiangular::{self, Approach, Lit};
+use crate::media::interaction::Interaction;
 use crate::media::{Media, MediumPart, Travelled};
-use crate::mis::{Edge, Partial};
 use crate::path_tracing::passes_straight;
-use crate::task::{Context, PathVertex, SampleState, Task, VertexKind};
+use crate::photons::beam::{Beam, Leaving};
+use crate::sampling::task::{Context, PathVertex, SampleState, Task, VertexKind};
+use crate::techniques::mis::{Edge, Partial};
 use crate::techniques::{DirectLight, PerSet, TechniqueCounts};
 use crate::walk::Walk;
 use bilux_math::Rgb;

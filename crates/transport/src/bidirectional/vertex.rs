@@ -1,16 +1,16 @@
 //! The vertices of subpaths.
 
-use crate::ball::Ball;
-use crate::equiangular::{Approach, Lit};
-use crate::interaction::{Interaction, MediumPoint};
-use crate::limits::Events;
+use crate::film::limits::Events;
 use crate::media::Media;
-use crate::mis::Partial;
-use crate::photon_grid::PhotonPosition;
+use crate::media::ball::Ball;
+use crate::media::equiangular::{Approach, Lit};
+use crate::media::interaction::{Interaction, MediumPoint};
+use crate::photons::grid::PhotonPosition;
 use crate::photons::{MediumPhoton, Photon, PhotonWalk};
-use crate::task::Context;
+use crate::sampling::task::Context;
 use crate::techniques::PerSet;
-use crate::way::Way;
+use crate::techniques::mis::Partial;
+use crate::techniques::way::Way;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::Scene;
 
@@ -30,7 +30,7 @@ pub(crate) struct Vertex<const N: usize = 1> {
     pub(super) events: Events,
     /// Whether it is among those that are connected at all.
     pub(super) is_kept: bool,
-    /// The cell in which its light subpath began: [`crate::emission::Start::cell`].
+    /// The cell in which its light subpath began: [`crate::light::emission::Start::cell`].
     pub(crate) origin: u16,
     /// The subpath carries a single wavelength, whatever is here.
     pub(super) came_split: bool,
@@ -42,7 +42,7 @@ pub(crate) struct Vertex<const N: usize = 1> {
     pub(super) ball: Option<Ball>,
     /// The light that its light subpath comes from, if it comes straight from there.
     pub(super) straight_from: Option<usize>,
-    /// How the ray of a camera subpath came here, where [equiangular points](crate::equiangular) may be.
+    /// How the ray of a camera subpath came here, where [equiangular points](crate::media::equiangular) may be.
     pub(super) approach: Option<Approach>,
 }
 
@@ -75,7 +75,7 @@ impl<const N: usize> Vertex<N> {
         self.came_split || self.at.splits()
     }
 
-    /// This vertex of a light subpath, where camera subpaths may find it as an [equiangular point](crate::equiangular). `factor` turns how
+    /// This vertex of a light subpath, where camera subpaths may find it as an [equiangular point](crate::media::equiangular). `factor` turns how
     /// often it is connected with its light into what counts beyond it.
     pub(super) fn lit(&self, factor: f32) -> Option<Lit<N>> {
         let (light, connected) = (self.straight_from?, self.partial.connected * factor);

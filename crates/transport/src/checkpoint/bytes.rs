@@ -1,14 +1,14 @@
 //! Checkpoints as bytes.
 
 use super::{Begun, Checkpoint, OpenPass, Standing};
-use crate::bytes::{Rest, put_counts, put_sums};
-use crate::error::FilmError;
-use crate::failures::PixelFailures;
+use crate::film::bytes::{Rest, put_counts, put_sums};
+use crate::film::error::FilmError;
+use crate::film::failures::PixelFailures;
+use crate::film::interval::Interval;
+use crate::film::limits::MAX_SIDE;
 use crate::film::{Film, MAX_SAMPLES, zeroed};
-use crate::interval::Interval;
-use crate::limits::MAX_SIDE;
+use crate::sampling::splats::Iterations;
 use crate::schedule::ScheduleMemory;
-use crate::splats::Iterations;
 use bilux_accel::Counters;
 use std::io::{self, Write};
 use std::ops::Range;

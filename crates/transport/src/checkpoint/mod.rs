@@ -7,14 +7,14 @@
 
 mod bytes;
 
-use crate::error::RenderError;
-use crate::failures::PixelFailures;
+use crate::film::error::RenderError;
+use crate::film::failures::PixelFailures;
+use crate::film::interval::Interval;
+use crate::film::window::Window;
 use crate::film::{Film, MAX_SAMPLES};
-use crate::interval::Interval;
+use crate::sampling::splats::Iterations;
+use crate::schedule::settings::RenderSettings;
 use crate::schedule::{Schedule, ScheduleMemory};
-use crate::settings::RenderSettings;
-use crate::splats::Iterations;
-use crate::window::Window;
 use bilux_accel::Counters;
 use std::ops::Range;
 use std::time::Duration;

@@ -1,7 +1,7 @@
 //! Local illumination: Equation 1.
 
 use super::shadow::Shadows;
-use crate::task::Task;
+use crate::sampling::task::Task;
 use bilux_math::transcendental::powf;
 use bilux_math::{Rgb, Vec2, Vec3, frame::reflect};
 use bilux_scene::{ClassicLight, ClassicMaterial, Surface};

@@ -5,8 +5,8 @@
 //! [Cook 1984]; with all extents zero it uses no random numbers.
 
 use super::{Local, LocalRules};
-use crate::sampler::PixelSampler;
-use crate::task::{PathVertex, Task, VertexKind};
+use crate::sampling::sampler::PixelSampler;
+use crate::sampling::task::{PathVertex, Task, VertexKind};
 use bilux_math::hash::hash_words;
 use bilux_math::transcendental::{cos, sin_cos};
 use bilux_math::{Frame, Rgb, Vec3, frame::reflect};

@@ -1,6 +1,6 @@
 //! Shadows of the classic modes.
 
-use crate::task::Task;
+use crate::sampling::task::Task;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::media::beer;
 use bilux_scene::{ClassicLight, Ray, Surface};

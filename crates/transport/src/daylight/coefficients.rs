@@ -4,14 +4,14 @@
 
 use super::SkyPatches;
 use super::sunlight::Straight;
-use crate::camera_rays::CameraRays;
-use crate::error::{FilmError, RenderError};
-use crate::failures::SamplePlace;
-use crate::interval::REPLICATES;
-use crate::pixel_integrator::PixelIntegrator;
-use crate::progress::Progress;
-use crate::settings::{RenderSettings, threads};
-use crate::task::{FoundLight, Record, Task};
+use crate::film::error::{FilmError, RenderError};
+use crate::film::failures::SamplePlace;
+use crate::film::interval::REPLICATES;
+use crate::integrators::pixel_integrator::PixelIntegrator;
+use crate::sampling::camera_rays::CameraRays;
+use crate::sampling::task::{FoundLight, Record, Task};
+use crate::schedule::progress::Progress;
+use crate::schedule::settings::{RenderSettings, threads};
 use bilux_math::Rgb;
 use bilux_math::parallel::{for_each, install};
 use bilux_scene::cameras::{SensorPoint, SensorPoints};

@@ -1,11 +1,11 @@
 //! Sunlight that reaches points straight: the sun is a point, so that its shadows are exact. Panes of glass let their part of it
 //! through. \[IES LM-83-12]
 
-use crate::error::{FilmError, RenderError};
+use crate::film::error::{FilmError, RenderError};
 use crate::media::Media;
 use crate::path_tracing::sheet::paper;
-use crate::progress::Progress;
-use crate::settings::{RenderSettings, threads};
+use crate::schedule::progress::Progress;
+use crate::schedule::settings::{RenderSettings, threads};
 use bilux_math::parallel::{for_each, install};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::bsdf::BsdfSample;

@@ -10,7 +10,7 @@
 use super::{IntegratorEntry, LightSubpaths, PixelIntegrator};
 use crate::bidirectional::{BothEnds, CameraSubpath};
 use crate::photons::Photons;
-use crate::task::Task;
+use crate::sampling::task::Task;
 use crate::techniques::{PixelSum, TechniqueCounts};
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;

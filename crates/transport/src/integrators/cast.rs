@@ -2,7 +2,7 @@
 
 use super::{CameraSpread, IntegratorEntry, PixelIntegrator};
 use crate::classic::{LocalRules, SPECULAR, ShadowRule, Shadows, specular};
-use crate::task::Task;
+use crate::sampling::task::Task;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::Ray;

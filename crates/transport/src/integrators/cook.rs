@@ -3,7 +3,7 @@
 
 use super::{CameraSpread, IntegratorEntry, PixelIntegrator};
 use crate::classic::{self, CUTOFF, FRESNEL, RayTree, SHADOW_RULE, SHADOWS, SPECULAR};
-use crate::task::Task;
+use crate::sampling::task::Task;
 use bilux_math::Rgb;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_scene::{Ray, Reader};

@@ -4,9 +4,9 @@
 
 use super::{IntegratorEntry, LightSubpaths, PixelIntegrator};
 use crate::bidirectional::{LightTracing, LightTracingSamples};
-use crate::sample_queue::SampleQueue;
-use crate::splats::Splats;
-use crate::task::{Context, Task};
+use crate::sampling::sample_queue::SampleQueue;
+use crate::sampling::splats::Splats;
+use crate::sampling::task::{Context, Task};
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;
 use bilux_scene::Ray;

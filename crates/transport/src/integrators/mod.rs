@@ -8,6 +8,7 @@ mod light;
 mod merging;
 mod occlusion;
 pub(crate) mod path;
+pub(crate) mod pixel_integrator;
 mod sppm;
 mod vcm;
 mod whitted;
@@ -15,8 +16,8 @@ mod whitted;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_scene::{Reader, SceneError, Spec};
 
-pub use crate::camera_rays::CameraSpread;
-pub use crate::pixel_integrator::{Chooser, LightSubpaths, PixelIntegrator};
+pub use crate::integrators::pixel_integrator::{Chooser, LightSubpaths, PixelIntegrator};
+pub use crate::sampling::camera_rays::CameraSpread;
 
 /// A row of [`INTEGRATORS`].
 #[derive(Clone, Copy, Debug)]

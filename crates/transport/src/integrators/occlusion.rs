@@ -3,8 +3,8 @@
 
 use super::{IntegratorEntry, PixelIntegrator};
 use crate::media::Media;
-use crate::task::Task;
-use crate::through::Through;
+use crate::sampling::task::Task;
+use crate::walk::through::Through;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Frame, Rgb, Vec3, warp};
 use bilux_scene::Ray;

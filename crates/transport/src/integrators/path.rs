@@ -3,8 +3,8 @@
 use super::{IntegratorEntry, PixelIntegrator};
 use crate::path_tracing::{PathTracing, Sampling};
 use crate::queue::PathQueue;
-use crate::sample_queue::SampleQueue;
-use crate::task::{Context, Task};
+use crate::sampling::sample_queue::SampleQueue;
+use crate::sampling::task::{Context, Task};
 use bilux_math::Rgb;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_scene::Ray;

@@ -8,8 +8,8 @@ use crate::bidirectional::{
     from_infinity, merged,
 };
 use crate::photons::{Merging, Photons};
-use crate::sample_queue::SampleQueue;
-use crate::task::{Context, Task};
+use crate::sampling::sample_queue::SampleQueue;
+use crate::sampling::task::{Context, Task};
 use crate::techniques::{Contribution, PerSet, PixelSum, Tally, Technique, TechniqueCounts};
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec2};

@@ -5,9 +5,9 @@
 use super::bdpt::of_camera_path;
 use super::{IntegratorEntry, LightSubpaths, PixelIntegrator};
 use crate::bidirectional::BothEnds;
-use crate::emission::Guide;
+use crate::light::emission::Guide;
 use crate::photons::{MergeCounts, Merging, Photons};
-use crate::task::Task;
+use crate::sampling::task::Task;
 use crate::techniques::{PerSet, TechniqueCounts};
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;

@@ -1,6 +1,6 @@
 //! The channels of labels: one table, from which pictures, files and arrays get them.
 
-use crate::aovs::Aov;
+use crate::film::aovs::Aov;
 use bilux_math::{Vec2, Vec3};
 
 /// All labels of a pixel.

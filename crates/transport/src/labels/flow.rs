@@ -1,7 +1,7 @@
 //! Optical flow: where the labelled points are at another moment, and whether they are visible there.
 
 use super::surface::{LabelRays, Labelled};
-use crate::exposure::Exposure;
+use crate::sampling::exposure::Exposure;
 use bilux_math::{DVec2, DVec3, Vec2, Vec3};
 use bilux_scene::{Camera, CameraSample, Scene, Tracer};
 

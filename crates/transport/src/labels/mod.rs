@@ -15,12 +15,12 @@ mod flow;
 mod silhouettes;
 mod surface;
 
-use crate::aovs::Aov;
-use crate::error::{FilmError, RenderError};
+use crate::film::aovs::Aov;
+use crate::film::error::{FilmError, RenderError};
+use crate::film::window::{TILE, Window};
 use crate::film::zeroed;
-use crate::progress::Progress;
-use crate::settings::{RenderSettings, threads};
-use crate::window::{TILE, Window};
+use crate::schedule::progress::Progress;
+use crate::schedule::settings::{RenderSettings, threads};
 use bilux_math::parallel::{install, map};
 use bilux_math::{DVec2, Mat4, Vec3};
 use bilux_pictures::Picture;

@@ -1,10 +1,10 @@
 //! Amodal masks: all that a camera would see of an object if nothing hid it, and what it does see of it.
 
 use super::surface::LabelRays;
-use crate::error::{FilmError, RenderError};
-use crate::limits::MAX_SIDE;
-use crate::progress::Progress;
-use crate::settings::{RenderSettings, threads};
+use crate::film::error::{FilmError, RenderError};
+use crate::film::limits::MAX_SIDE;
+use crate::schedule::progress::Progress;
+use crate::schedule::settings::{RenderSettings, threads};
 use bilux_math::parallel::{install, map};
 use bilux_scene::{Camera, Scene, Tracer};
 

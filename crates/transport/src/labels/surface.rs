@@ -1,9 +1,9 @@
 //! The surface that all labels of a pixel describe.
 
-use crate::exposure::Exposure;
+use crate::film::window::Window;
 use crate::media::Media;
-use crate::settings::RenderSettings;
-use crate::window::Window;
+use crate::sampling::exposure::Exposure;
+use crate::schedule::settings::RenderSettings;
 use bilux_accel::Hit;
 use bilux_math::{DVec2, Vec2, Vec3};
 use bilux_scene::{Camera, CameraSample, Ray, Scene, Surface, Tracer};

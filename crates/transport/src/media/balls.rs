@@ -1,8 +1,8 @@
 //! Which balls points of dense media are merged in.
 
 use super::Media;
-use crate::ball::Ball;
-use crate::interaction::{Interaction, MediumPoint};
+use crate::media::ball::Ball;
+use crate::media::interaction::{Interaction, MediumPoint};
 use crate::techniques::{PerSet, TechniqueCounts};
 use bilux_math::Vec3;
 use bilux_scene::Scene;

@@ -2,7 +2,7 @@
 
 use super::Media;
 use super::nested::NONE;
-use crate::interaction::Interaction;
+use crate::media::interaction::Interaction;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::media::{Flight, MediumEvent, WalkChannel};
 use bilux_scene::{Enclosure, Ray, Scene};

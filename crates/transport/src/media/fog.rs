@@ -2,8 +2,8 @@
 
 use super::Media;
 use super::passage::{Arrival, Passage, Travelled, behind, draws_along};
-use crate::equiangular;
-use crate::interaction::MediumPoint;
+use crate::media::equiangular;
+use crate::media::interaction::MediumPoint;
 use bilux_math::Vec3;
 use bilux_scene::{Medium, Ray, Scene, Surface, Tracer};
 

@@ -1,6 +1,6 @@
 //! What lies along a line through media, and how far a path comes along it.
 
-use crate::interaction::MediumPoint;
+use crate::media::interaction::MediumPoint;
 use bilux_math::Rgb;
 use bilux_math::hash::mix64;
 use bilux_scene::media::{Draws, FreePath, mean};

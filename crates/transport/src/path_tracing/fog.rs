@@ -1,14 +1,14 @@
 //! Points of fog on the rays of a path, wherever its walk has its events.
 
 use super::{Path, PathTracing, Vertex};
-use crate::equiangular::{Approach, EquiangularSample};
-use crate::interaction::Interaction;
+use crate::media::equiangular::{Approach, EquiangularSample};
+use crate::media::interaction::Interaction;
 use crate::media::{Arrival, Travelled};
-use crate::task::Task;
+use crate::sampling::task::Task;
 use bilux_scene::{Ray, Surface};
 
 impl PathTracing {
-    /// Connects the [equiangular points](crate::equiangular) of the path's ray with their lights. `first` is the first surface along it, as far as it
+    /// Connects the [equiangular points](crate::media::equiangular) of the path's ray with their lights. `first` is the first surface along it, as far as it
     /// has been traced, and `traced` that distance in metres.
     pub(super) fn equiangular(
         &self,

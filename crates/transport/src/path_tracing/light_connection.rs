@@ -1,7 +1,7 @@
 //! The connection of a camera path's vertex with a point of a light.
 
-use crate::segment::Segment;
-use crate::task::{PathVertex, SampleState, VertexKind};
+use crate::sampling::task::{PathVertex, SampleState, VertexKind};
+use crate::walk::segment::Segment;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::Tracer;
 

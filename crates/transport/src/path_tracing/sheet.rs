@@ -2,9 +2,9 @@
 //! ([`Camera::receives`](bilux_scene::Camera::receives)). What such paper reflects is the irradiance over π.
 
 use super::{Path, PathTracing, Vertex};
-use crate::interaction::{Interaction, NO_OBJECT};
 use crate::media::Media;
-use crate::task::Task;
+use crate::media::interaction::{Interaction, NO_OBJECT};
+use crate::sampling::task::Task;
 use crate::walk::Walk;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::bsdf::{Lambert, Lobe};

@@ -1,9 +1,9 @@
 //! The camera rays of [`LANES`] samples at a time, where the camera is a pinhole.
 
 use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, run_at, vec3};
-use crate::camera_rays::PinholeRays;
-use crate::failures::SamplePlace;
-use crate::sampler::{self, PixelSampler};
+use crate::film::failures::SamplePlace;
+use crate::sampling::camera_rays::PinholeRays;
+use crate::sampling::sampler::{self, PixelSampler};
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::cameras::Pinhole;
 use bilux_scene::{Ray, Scene};

@@ -9,7 +9,7 @@ use super::paths::Paths;
 use super::triangles::Triangles;
 use super::vertices::{NO_PATH, Vertices};
 use crate::path_tracing::PathTracing;
-use crate::task::Context;
+use crate::sampling::task::Context;
 use bilux_accel::Hit;
 use bilux_math::{Frame, Rgb, Vec2, Vec3, warp};
 use bilux_scene::bsdf::faces_away;

@@ -3,7 +3,7 @@
 use super::lanes::LANES;
 use super::paths::Paths;
 use crate::path_tracing::PathTracing;
-use crate::task::Context;
+use crate::sampling::task::Context;
 use bilux_math::{Rgb, Vec3};
 
 /// The rays of some of them, and what they find.

@@ -3,10 +3,10 @@
 use super::lanes::{LANES, put, vec3};
 use super::paths::Paths;
 use super::vertices::{Point, Vertices};
-use crate::interaction::Interaction;
 use crate::media::Arrival;
+use crate::media::interaction::Interaction;
 use crate::path_tracing::{Path, PathTracing};
-use crate::task::Context;
+use crate::sampling::task::Context;
 use bilux_accel::Hit;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{CpuLevel, Tracer, TransportMode};

@@ -16,12 +16,12 @@ mod smooth;
 mod triangles;
 mod vertices;
 
-use crate::camera_rays::CameraRays;
-use crate::failures::SamplePlace;
+use crate::film::failures::SamplePlace;
 use crate::media::Media;
 use crate::path_tracing::{Path, PathTracing};
-use crate::sample_queue::{SampleQueue, SampleSink};
-use crate::task::{Context, SampleState};
+use crate::sampling::camera_rays::CameraRays;
+use crate::sampling::sample_queue::{SampleQueue, SampleSink};
+use crate::sampling::task::{Context, SampleState};
 use bilux_accel::Hit;
 use bilux_math::Rgb;
 use bilux_scene::{Ray, Scene, Shading, Tracer, Wavelength};

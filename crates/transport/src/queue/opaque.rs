@@ -9,7 +9,7 @@ use super::next_rays::{NextRays, density, rest_of_number, sides_agree};
 use super::paths::Paths;
 use super::vertices::{Point, Vertices};
 use crate::path_tracing::PathTracing;
-use crate::task::Context;
+use crate::sampling::task::Context;
 use bilux_accel::Hit;
 use bilux_math::{Frame, Vec2};
 use bilux_scene::bsdf::{AlbedoTable, OpaqueBaseAlbedos, OpaqueBaseForWo, OpaqueBaseInputs, faces_away};

@@ -1,9 +1,9 @@
 //! The paths of a queue, and what happens to them at one event.
 
-use crate::failures::SamplePlace;
+use crate::film::failures::SamplePlace;
 use crate::path_tracing::Path;
-use crate::shadow_rays::ShadowRays;
-use crate::task::{Context, SampleState, Task};
+use crate::sampling::task::{Context, SampleState, Task};
+use crate::walk::shadow_rays::ShadowRays;
 use bilux_accel::Hit;
 use bilux_math::Rgb;
 use bilux_scene::Tracer;

@@ -9,7 +9,7 @@ use super::paths::Paths;
 use super::triangles::Triangles;
 use super::vertices::{NO_PATH, Vertices};
 use crate::path_tracing::PathTracing;
-use crate::task::Context;
+use crate::sampling::task::Context;
 use bilux_accel::Hit;
 use bilux_math::Frame;
 use bilux_math::frame::reflect;

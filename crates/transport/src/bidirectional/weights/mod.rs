@@ -16,11 +16,11 @@ mod samples;
 
 use self::fog::Fog;
 use self::path::{Flaw, Path};
-use crate::failures::SamplePlace;
+use crate::film::failures::SamplePlace;
 use crate::integrators;
-use crate::settings::RenderSettings;
+use crate::sampling::task::Task;
+use crate::schedule::settings::RenderSettings;
 use crate::shapes;
-use crate::task::Task;
 use crate::techniques::{Contribution, PerSet, TechniqueCounts};
 use bilux_math::{Aabb, Rgb, Vec3};
 use bilux_scene::cameras::CameraSpec;

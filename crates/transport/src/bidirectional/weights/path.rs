@@ -2,10 +2,10 @@
 
 use super::fog::Fog;
 use super::{PANEL_AREA, is_dense};
-use crate::interaction::{Interaction, MediumPoint};
-use crate::limits::MAX_CONNECTED_ROW;
+use crate::film::limits::MAX_CONNECTED_ROW;
+use crate::media::interaction::{Interaction, MediumPoint};
 use crate::path_tracing::passes_straight;
-use crate::task::Task;
+use crate::sampling::task::Task;
 use crate::techniques::{PerSet, TechniqueCounts};
 use bilux_math::transcendental::{atan2_f64, exp_f64};
 use bilux_math::{Vec2, Vec3};

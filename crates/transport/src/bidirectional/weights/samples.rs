@@ -2,17 +2,17 @@
 
 use super::path::{Path, PathVertex, Start};
 use super::{PANEL_NORMAL, Verdict};
-use crate::beam::Beam;
 use crate::bidirectional::connect::{Connection, to_camera, to_light, to_vertex};
 use crate::bidirectional::light_paths::{LIGHT_STREAM, begin_at_light};
 use crate::bidirectional::*;
-use crate::equiangular::{Departure, Equiangular};
 use crate::media::Arrival;
-use crate::mis::Partial;
-use crate::photon_beams::PhotonBeams;
-use crate::photon_grid::PhotonPosition;
+use crate::media::equiangular::{Departure, Equiangular};
+use crate::photons::beam::Beam;
+use crate::photons::beams::PhotonBeams;
+use crate::photons::grid::PhotonPosition;
 use crate::photons::{Photon, PhotonWalk, Photons, TracedPhotons};
-use crate::task::Task;
+use crate::sampling::task::Task;
+use crate::techniques::mis::Partial;
 use crate::techniques::*;
 use bilux_math::{Rgb, Vec2, Vec3, warp};
 use bilux_scene::{LightSample, Ray, TransportMode};

@@ -10,9 +10,9 @@
 
 use super::pilot::{Grid, GridPass, PilotRound, SAMPLES, sample_all};
 use super::sets::DARK;
-use crate::emission::Guide;
+use crate::light::emission::Guide;
 use crate::photons::{MergeCounts, Merging};
-use crate::sampler::PixelSampler;
+use crate::sampling::sampler::PixelSampler;
 use crate::techniques::{Contribution, LightPathVisitor, PerSet, Tally, Technique, TechniqueCounts};
 use bilux_math::Vec2;
 use bilux_math::parallel::{map, ranges};
@@ -236,7 +236,7 @@ impl ContributionsByTile {
 #[cfg(test)]
 mod tests {
     use crate::integrators;
-    use crate::settings::RenderSettings;
+    use crate::schedule::settings::RenderSettings;
     use crate::shapes::built;
     use bilux_scene::Spec;
 

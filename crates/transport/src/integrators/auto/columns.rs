@@ -1,11 +1,11 @@
 //! How much of a picture path tracing shades in columns, which costs less.
 
 use super::pilot::Grid;
-use crate::camera_rays::CameraRays;
-use crate::failures::SamplePlace;
+use crate::film::failures::SamplePlace;
+use crate::film::window::Window;
 use crate::queue::PathQueue;
-use crate::settings::RenderSettings;
-use crate::window::Window;
+use crate::sampling::camera_rays::CameraRays;
+use crate::schedule::settings::RenderSettings;
 use bilux_scene::{Shading, Tracer};
 
 /// The part of the first surfaces, over the pilot's pixels, that path tracing shades in columns; 1 if there are none, and 0 where

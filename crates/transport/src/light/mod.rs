@@ -1,0 +1,4 @@
+//! Which lights are sampled, and where light subpaths begin.
+
+pub(crate) mod choice;
+pub(crate) mod emission;

@@ -1,0 +1,167 @@
+//! Traces the light subpaths of one iteration, whose vertices are kept as photons.
+
+use crate::bidirectional::{BATCH, LightPaths, QueuedSample, Vertex};
+use crate::film::failures::SamplePlace;
+use crate::film::window::Window;
+use crate::integrators::pixel_integrator::PixelIntegrator;
+use crate::photons::{MergeCounts, Merging, PhotonPaths, PhotonWalk, Photons, TracedPhotons};
+use crate::sampling::camera_rays::CameraRays;
+use crate::sampling::splats::IterationSplats;
+use crate::techniques::{Contribution, LightPathVisitor, PerSet, Tally, TechniqueCounts};
+use bilux_math::parallel::map;
+use bilux_scene::{Counters, Scene, Tracer};
+use std::ops::Range;
+
+/// The samples that can be taken together: where subpaths are merged, one of each pixel, since each iteration has photons of
+/// its own; otherwise all of them.
+pub(crate) fn iterations(
+    integrator: &dyn PixelIntegrator,
+    samples: &Range<u32>,
+) -> impl Iterator<Item = Range<u32>> + use<> {
+    let end = samples.end;
+    let step = if integrator.merging().is_some() { 1 } else { samples.len().max(1) as u32 };
+    samples.clone().step_by(step as usize).map(move |first| first..end.min(first + step))
+}
+
+/// The pixels whose light subpaths an iteration traces, and those of them that keep their beams and points: every so many.
+struct Followed {
+    width: u64,
+    step: u64,
+    beam_step: u64,
+    point_step: u64,
+    counts: MergeCounts,
+}
+
+impl Followed {
+    fn of(scene: &Scene, merging: &Merging, tiles: &[Window], iteration: u32) -> Followed {
+        let pixels: usize = tiles.iter().map(Window::pixels).sum();
+        let most = ((pixels as f64 * f64::from(merging.part)) as usize).min(merging.max_light_paths as usize);
+        let step = pixels.div_ceil(most.max(1)) as u64;
+        let width = u64::from(tiles.iter().map(|tile| tile.x + tile.width).max().unwrap_or(1));
+        let count = |step| {
+            let is_one = |tile: &Window, i: usize| is_nth(tile.position(i), width, step);
+            let in_tile = |tile: &Window| (0..tile.pixels()).filter(|&i| is_one(tile, i)).count();
+            tiles.iter().map(in_tile).sum::<usize>() as f32
+        };
+        let traced = count(step);
+        let beam_step = step * merging.beam_step(scene, iteration, traced) as u64;
+        let point_step = step * Merging::point_step(traced) as u64;
+        let paths = PhotonPaths { all: traced, with_beams: count(beam_step), with_points: count(point_step) };
+        let counts = merging.counts(scene, iteration, paths, pixels as f32);
+        Followed { width, step, beam_step, point_step, counts }
+    }
+
+    fn is_traced(&self, at: (u32, u32)) -> bool {
+        is_nth(at, self.width, self.step)
+    }
+
+    fn has_beams(&self, at: (u32, u32)) -> bool {
+        is_nth(at, self.width, self.beam_step)
+    }
+
+    fn has_points(&self, at: (u32, u32)) -> bool {
+        is_nth(at, self.width, self.point_step)
+    }
+}
+
+/// Every pixel of so many, row by row.
+fn is_nth((x, y): (u32, u32), width: u64, step: u64) -> bool {
+    (u64::from(y) * width + u64::from(x)).is_multiple_of(step)
+}
+
+impl Photons {
+    /// The photons of an iteration, where the integrator merges subpaths, and the work that they took. What the camera sees of
+    /// their light subpaths goes to `splats`.
+    pub(crate) fn of_iteration(
+        integrator: &dyn PixelIntegrator,
+        rays: &CameraRays,
+        tiles: &[Window],
+        iteration: u32,
+        splats: Option<&IterationSplats>,
+    ) -> Option<(Photons, Counters)> {
+        let merging = integrator.merging()?;
+        let techniques = |counts: &MergeCounts| merging.techniques(counts);
+        Some(Photons::trace(rays, merging, tiles, iteration, techniques, splats))
+    }
+}
+
+impl<const N: usize> Photons<N> {
+    /// Traces the light subpaths of an iteration, one per pixel, or every `n`th if there would be too many.
+    ///
+    /// Also returns the number of rays that this took. `techniques` gives all techniques, given how often subpaths are
+    /// merged. Connections with the camera go to the `visitor`.
+    pub(crate) fn trace<O: LightPathVisitor<N>>(
+        eye: &CameraRays,
+        merging: &Merging,
+        tiles: &[Window],
+        iteration: u32,
+        techniques: impl FnOnce(&MergeCounts) -> TechniqueCounts<N>,
+        visitor: Option<&O>,
+    ) -> (Photons<N>, Counters) {
+        let scene = eye.context.scene;
+        let followed = Followed::of(scene, merging, tiles, iteration);
+        let (radius, mut techniques) = (merging.radius(scene, iteration), techniques(&followed.counts));
+        // Of many lights one is sampled, seldom the nearest, which photons find by themselves.
+        techniques.direct |= !eye.context.lights.takes_all();
+        techniques.splats_cones |= eye.context.lights.has_beams();
+        let of_tile = |(index, tile): (usize, &Window)| {
+            let mut tracer = Tracer::new(scene, eye.settings.count_work);
+            let mut traced = TracedPhotons::NONE;
+            let mut tally = visitor.map(O::tally);
+            let places: Vec<(u32, u32)> = (0..tile.pixels())
+                .map(|i| tile.position(i))
+                .filter(|&place| followed.is_traced(place))
+                .collect();
+            let mut paths = LightPaths::default();
+            for places in places.chunks(BATCH) {
+                let place = |&(x, y): &(u32, u32)| SamplePlace { x, y, sample: iteration };
+                let has_beams = |&at: &(u32, u32)| techniques.beams != PerSet::ZERO && followed.has_beams(at);
+                let sample = |at| QueuedSample::of_light(eye.light_sample(place(at)), has_beams(at));
+                let mut samples: Vec<_> = places.iter().map(sample).collect();
+                let context = &eye.context;
+                paths.trace(&mut samples, context, &mut tracer, merging.roulette_depth, &techniques);
+                traced.beams.append(&mut paths.beams);
+                if let Some(tally) = &mut tally {
+                    let mut current = None;
+                    let add = |i: usize, film, technique, found: &Contribution<N>| {
+                        if current != Some(i) {
+                            O::begin(tally, places[i].0, places[i].1, iteration);
+                            current = Some(i);
+                        }
+                        tally.add_splat(film, technique, found);
+                    };
+                    paths.connect_to_camera(&mut samples, context, &mut tracer, &techniques, add);
+                }
+                let is_coloured = scene.has_coloured_distances();
+                let has_points = |at| techniques.points != PerSet::ZERO && followed.has_points(at);
+                for (i, sample) in samples.iter().enumerate() {
+                    let channel = sample.state.channel;
+                    let is_kept = |vertex: &&Vertex<N>| vertex.depth > 0 || techniques.direct;
+                    traced.surfaces.extend(paths.of(i).filter(is_kept).filter_map(Vertex::photon));
+                    if is_coloured {
+                        let is_kept = |vertex: &&Vertex<N>| !vertex.at.is_in_medium() && is_kept(vertex);
+                        let walk = |vertex: &Vertex<N>| PhotonWalk { odds: vertex.odds, channel };
+                        traced.walks.extend(paths.of(i).filter(is_kept).map(walk));
+                    }
+                    if has_points(places[i]) {
+                        let is_kept = |vertex: &&Vertex<N>| {
+                            vertex.depth > 0 || vertex.at.direct_light(&techniques).merges
+                        };
+                        let point = |vertex: &Vertex<N>| vertex.medium_photon(scene, channel);
+                        traced.points.extend(paths.of(i).filter(is_kept).filter_map(point));
+                    }
+                }
+            }
+            if let (Some(visitor), Some(tally)) = (visitor, tally) {
+                visitor.take(index, tally);
+            }
+            (traced, tracer.counters)
+        };
+        let (mut all, mut counted) = (TracedPhotons::NONE, Counters::default());
+        for (part, counters) in map(tiles.iter().enumerate(), of_tile) {
+            all.append(part);
+            counted += counters;
+        }
+        (Photons::new(all, radius, techniques), counted)
+    }
+}

@@ -1,0 +1,69 @@
+//! When the points of the film are exposed: all at once, or one row after the other, as a rolling shutter does it.
+
+use crate::schedule::settings::RenderSettings;
+use bilux_math::Vec2;
+use bilux_scene::Scene;
+
+/// Every row is exposed for as long, the first one first.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Exposure {
+    opens: f32,
+    /// For the first row.
+    closes: f32,
+    /// How much later the last row is exposed.
+    readout: f32,
+    /// The half of a row's height, as a part of the film.
+    half_row: f32,
+}
+
+impl Exposure {
+    /// The shutter of a scene is open while any row is exposed. The middles of rows are exposed evenly one after the other.
+    pub(crate) fn new(scene: &Scene, settings: &RenderSettings) -> Exposure {
+        let [opens, last] = scene.shutter();
+        // A single row is the first and the last.
+        let readout = if settings.height > 1 { settings.readout } else { 0.0 };
+        let closes = if readout == 0.0 { last } else { (last - settings.readout).max(opens) };
+        Exposure { opens, closes, readout, half_row: 0.5 / settings.height as f32 }
+    }
+
+    /// When the first row's exposure begins and ends.
+    #[inline]
+    pub(crate) fn of_first_row(&self) -> [f32; 2] {
+        [self.opens, self.closes]
+    }
+
+    /// How much later than the first row a point of the film is exposed: not before it, and not after the last. Beyond the film's edges, time
+    /// runs backwards: then rays are even over time, whichever filter spreads them over the film.
+    #[inline]
+    pub(crate) fn delay(&self, film: Vec2) -> f32 {
+        if self.readout == 0.0 {
+            return 0.0;
+        }
+        let inside = 1.0 - (1.0 - film.y.abs()).abs();
+        self.readout * ((inside - self.half_row) / (1.0 - 2.0 * self.half_row)).clamp(0.0, 1.0)
+    }
+
+    /// Whether a point of the film is exposed at this time.
+    #[inline]
+    pub(crate) fn exposes(&self, film: Vec2, time: f32) -> bool {
+        self.readout == 0.0 || self.is_open(time - self.delay(film))
+    }
+
+    /// Whether a row that is exposed like the first one is exposed at this time.
+    fn is_open(&self, time: f32) -> bool {
+        (self.opens..=self.closes).contains(&time)
+    }
+
+    /// By how much camera rays of this time are denser than those of all times together, since they begin at a part of the film only.
+    #[inline]
+    pub(crate) fn density(&self, time: f32) -> f32 {
+        if self.readout == 0.0 {
+            return 1.0;
+        }
+        let [first, last] =
+            [self.closes, self.opens].map(|end| ((time - end) / self.readout).clamp(0.0, 1.0));
+        // The upper half of the first row is exposed with its middle, and the lower half of the last.
+        let ends = [time, time - self.readout].into_iter().filter(|time| self.is_open(*time)).count() as f32;
+        1.0 / ((last - first) * (1.0 - 2.0 * self.half_row) + ends * self.half_row)
+    }
+}

@@ -1,0 +1,225 @@
+//! What an integrator works with: what all samples of a render share, and what belongs to one of them.
+
+use crate::light::choice::LightChoice;
+use crate::light::emission::Emission;
+use crate::photons::Photons;
+use crate::sampling::exposure::Exposure;
+use crate::sampling::sampler::PixelSampler;
+use crate::schedule::settings::Reach;
+use crate::techniques::way::{Place, Way};
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::{Camera, Scene, Tracer, TransportMode, Wavelength};
+use std::sync::Arc;
+
+/// What all samples of a render share.
+pub struct Context<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// The camera.
+    pub camera: &'a dyn Camera,
+    /// Where light subpaths are connected with the camera.
+    pub(crate) reach: Reach,
+    /// When.
+    pub(crate) exposure: Exposure,
+    /// Chooses lights by what they bring.
+    pub lights: Arc<LightChoice>,
+    /// Starts light subpaths.
+    pub emission: Emission,
+    /// The photons of this iteration's light subpaths, where subpaths are merged.
+    pub photons: Option<&'a Photons>,
+    /// Maximum number of scattering events on surfaces after the camera; 0 is emission only.
+    pub max_depth: u32,
+}
+
+/// What belongs to one sample.
+#[derive(Clone, Debug)]
+pub struct SampleState {
+    /// Its random numbers.
+    pub sampler: PixelSampler,
+    /// The wavelength of its paths, wherever they begin.
+    pub wavelength: Wavelength,
+    /// The channel whose distances its paths have in media, wherever they begin.
+    pub(crate) channel: u8,
+    /// Vertices that its paths have reached so far. Queues do not count them.
+    pub vertices: u32,
+    /// What is recorded of it, if anything is.
+    pub record: Option<Box<Record>>,
+}
+
+/// What is recorded of a sample.
+#[derive(Clone, Debug, Default)]
+pub struct Record {
+    /// Events along its paths, if these are wanted.
+    pub events: Option<Vec<Event>>,
+    /// The light that it finds, light by light, if that is wanted.
+    pub found: Option<Vec<FoundLight>>,
+    /// The direction in which a path that [receives](bilux_scene::Camera::receives) leaves its point.
+    pub(crate) first: Option<Vec3>,
+    /// How many of the lights found are those that the point itself samples: theirs comes straight, or through panes.
+    pub(crate) straight: usize,
+    /// The path from the camera, if the lengths of those that find light are wanted.
+    pub(crate) way: Option<Way>,
+}
+
+/// The tools of one sample.
+pub struct Task<'t, 'a> {
+    /// What it shares with all others.
+    pub context: &'t Context<'a>,
+    /// Traces rays, and counts them.
+    pub tracer: &'t mut Tracer<'a>,
+    /// What is its own.
+    pub sample: &'t mut SampleState,
+}
+
+/// Light that a sample has found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FoundLight {
+    /// Edges of its path, one more than the scattering events.
+    pub edges: u32,
+    /// The index of the light in [`Scene::lights`]; `None` for surfaces that shine without being one of these.
+    pub light: Option<usize>,
+    /// The direction of the path's last edge, from the camera's end towards the light; of any length.
+    pub towards: Vec3,
+    /// What it adds to the sample.
+    pub radiance: Rgb,
+    /// The optical length of its path, in metres, if that is recorded; infinite if it comes from infinity.
+    pub length: f64,
+}
+
+/// An event along the path of a sample.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event {
+    /// Scattering events before it.
+    pub depth: u32,
+    /// A description for people.
+    pub what: String,
+    /// Where on the path it happened, if it is a vertex of one.
+    pub vertex: Option<PathVertex>,
+}
+
+/// A vertex of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathVertex {
+    /// What happened there.
+    pub kind: VertexKind,
+    /// The point in the scene; for what is infinitely far away, the unit direction to it.
+    pub at: Vec3,
+    /// What it adds to the light of the sample.
+    pub light: Rgb,
+}
+
+impl PathVertex {
+    /// A vertex that adds no light by itself.
+    pub fn new(kind: VertexKind, at: Vec3) -> PathVertex {
+        PathVertex { kind, at, light: Rgb::BLACK }
+    }
+}
+
+/// What happens at a vertex.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VertexKind {
+    /// A surface of the camera's path, whatever happens there.
+    Surface,
+    /// A surface reflects the path.
+    Reflection,
+    /// A surface lets the path through.
+    Transmission,
+    /// A surface absorbs the path.
+    Absorption,
+    /// A medium scatters the path.
+    Medium,
+    /// The path hits a surface that emits light.
+    Emitter,
+    /// The path leaves the scene.
+    Escape,
+    /// A point of a light that the vertex before it is connected with.
+    LightSample,
+    /// The same of a light that is infinitely far away.
+    DistantLight,
+    /// A surface of the light's path.
+    LightPath,
+}
+
+/// Random number streams of what happens to paths between surfaces begin here: to those from the camera, then to those from
+/// lights.
+const MEDIUM_STREAM: u64 = 3 << 32;
+
+/// And those for equiangular points.
+const EQUIANGULAR_STREAM: u64 = 5 << 32;
+
+impl SampleState {
+    /// A sample that has drawn nothing yet.
+    pub fn new(sampler: PixelSampler, wavelength: Wavelength) -> SampleState {
+        SampleState { sampler, wavelength, channel: 0, vertices: 0, record: None }
+    }
+
+    /// The light of a whole path as the colour channels see it: once a surface has [split](bilux_scene::Bsdf::splits)
+    /// the path, it carries a single wavelength.
+    #[inline]
+    pub fn seen(&self, light: Rgb, is_split: bool) -> Rgb {
+        if is_split { light * self.wavelength.weight } else { light }
+    }
+
+    /// Enters the stream of random numbers for what happens on the way to the vertex after `depth` events.
+    #[inline]
+    pub(crate) fn enter_medium(&mut self, depth: u32, mode: TransportMode) {
+        let from_light = if mode == TransportMode::Importance { 1 << 32 } else { 0 };
+        self.sampler.enter(MEDIUM_STREAM + from_light + u64::from(depth));
+    }
+
+    /// Enters the stream of random numbers for the [equiangular points](crate::media::equiangular) on the way to the vertex after `depth` events.
+    #[inline]
+    pub(crate) fn enter_equiangular(&mut self, depth: u32) {
+        self.sampler.enter(EQUIANGULAR_STREAM + u64::from(depth));
+    }
+
+    /// A seed of further random numbers, which draws none.
+    #[inline]
+    pub(crate) fn seed(&self) -> u64 {
+        self.sampler.seed()
+    }
+
+    /// Records light, if that is recorded at all; `length` gives the length of its path, given that so far.
+    #[inline]
+    pub(crate) fn find(
+        &mut self,
+        edges: u32,
+        light: Option<usize>,
+        towards: [f32; 3],
+        radiance: Rgb,
+        length: impl FnOnce(&Way) -> f64,
+    ) {
+        let Some(Record { found: Some(found), way, .. }) = self.record.as_deref_mut() else { return };
+        let length = way.as_ref().map_or(f64::INFINITY, length);
+        found.push(FoundLight { edges, light, towards: Vec3::from(towards), radiance, length });
+    }
+
+    /// Records that the path from the camera has come to a vertex, if its length is recorded.
+    #[inline]
+    pub(crate) fn reach(&mut self, place: impl FnOnce() -> Place) {
+        if let Some(way) = self.record.as_mut().and_then(|record| record.way.as_mut()) {
+            way.reach(place());
+        }
+    }
+
+    fn events(&mut self) -> Option<&mut Vec<Event>> {
+        self.record.as_mut()?.events.as_mut()
+    }
+
+    /// Records an event; if events are not recorded, `what` is not called.
+    #[inline]
+    pub fn note(&mut self, depth: u32, what: impl FnOnce() -> String) {
+        if let Some(events) = self.events() {
+            events.push(Event { depth, what: what(), vertex: None });
+        }
+    }
+
+    /// The same for a vertex of a path.
+    #[inline]
+    pub fn note_vertex(&mut self, depth: u32, what: impl FnOnce() -> (PathVertex, String)) {
+        if let Some(events) = self.events() {
+            let (vertex, what) = what();
+            events.push(Event { depth, what, vertex: Some(vertex) });
+        }
+    }
+}
