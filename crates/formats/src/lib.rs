@@ -9,19 +9,19 @@ mod native;
 mod packed;
 
 use bilux_dcc::{dae, fbx};
-use bilux_import::files;
-use bilux_import::formats::Formats;
-use bilux_import::grids;
+use bilux_import::tables::files;
+use bilux_import::tables::formats::Formats;
+use bilux_import::tables::grids;
 use bilux_meshes::{asc, e57, las, obj, off, ply, stl, threemf, xyz};
 use bilux_renderers::{mitsuba, pbrt, radiance};
 use bilux_scene::{SceneBuilder, Warning};
 use std::path::Path;
 
-pub use bilux_import::calibrations::{CalibratedCameras, read_cameras};
-pub use bilux_import::files::{archive_of, check_not_read};
-pub use bilux_import::formats::SceneFormatEntry;
-pub use bilux_import::grids::{GridOfFile, read_grid, read_grids};
-pub use bilux_import::luminaires::read_distribution;
+pub use bilux_import::tables::calibrations::{CalibratedCameras, read_cameras};
+pub use bilux_import::tables::files::{archive_of, check_not_read};
+pub use bilux_import::tables::formats::SceneFormatEntry;
+pub use bilux_import::tables::grids::{GridOfFile, read_grid, read_grids};
+pub use bilux_import::tables::luminaires::read_distribution;
 pub use bilux_import::{FormatError, Glass, ReadOptions, Scheme, WriteOptions};
 pub use native::{SHAPES, ShapeEntry, overlay, toml_schema};
 

@@ -4,7 +4,7 @@
 use super::document::Document;
 use super::json::JsonNode;
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 
 /// A list of elements that is known to lie within its buffer.
 pub(super) struct Accessor<'d> {

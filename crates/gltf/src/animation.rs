@@ -3,8 +3,8 @@
 use super::data::DataReader;
 use super::json::JsonNode;
 use bilux_import::FormatError;
-use bilux_import::between_keys::slerp;
-use bilux_import::choice::named_or_numbered;
+use bilux_import::input::choice::named_or_numbered;
+use bilux_import::world::between_keys::slerp;
 use bilux_scene::Animation;
 use std::collections::{HashMap, HashSet};
 

@@ -3,7 +3,7 @@
 use super::graph::Placed;
 use super::json::JsonNode;
 use bilux_import::FormatError;
-use bilux_import::sink::Sink;
+use bilux_import::input::sink::Sink;
 use bilux_math::transcendental::sin_cos_f64;
 use bilux_math::{DVec3, Rgb, Vec3};
 use bilux_scene::{Mesh, Object, Spec};

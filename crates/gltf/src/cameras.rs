@@ -2,7 +2,7 @@
 
 use super::json::JsonNode;
 use bilux_import::FormatError;
-use bilux_import::oddities::Oddities;
+use bilux_import::input::oddities::Oddities;
 use bilux_math::{DMat4, DVec3};
 use bilux_scene::Spec;
 use bilux_scene::cameras::CameraSpec;

@@ -1,8 +1,8 @@
 //! GLB, the binary container: a header and chunks. The first chunk is JSON, and the second may be a buffer.
 
 use bilux_import::FormatError;
-use bilux_import::reading::Source;
-use bilux_import::text::{whole_file, without_mark, without_padding};
+use bilux_import::bytes::text::{whole_file, without_mark, without_padding};
+use bilux_import::input::reading::Source;
 
 /// The first bytes of every GLB file.
 pub(super) const MAGIC: &[u8] = b"glTF";

@@ -4,8 +4,8 @@ use super::accessor::Accessor;
 use super::document::Document;
 use super::json::JsonNode;
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
-use bilux_import::oddities::Oddities;
+use bilux_import::bytes::budget::Budget;
+use bilux_import::input::oddities::Oddities;
 use bilux_scene::Span;
 
 /// Reads a document's data within the memory that is left, and notes what is odd about them.

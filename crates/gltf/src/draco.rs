@@ -5,7 +5,7 @@ use super::document::{DecodedAccessor, Document};
 use super::json::JsonNode;
 use super::topology::Mode;
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 use bilux_pictures::guarded_decoding;
 use draco_core::{
     DataType, DecodeLimits, DecoderBuffer, ErrorKind, Mesh, MeshDecoder, PointAttribute, PointIndex,

@@ -2,7 +2,7 @@
 
 use super::json::JsonNode;
 use bilux_import::FormatError;
-use bilux_import::oddities::Oddities;
+use bilux_import::input::oddities::Oddities;
 use bilux_scene::error::nearest_name;
 
 /// Extensions that are read, either fully or with a warning about what is not.

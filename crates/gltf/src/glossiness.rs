@@ -5,7 +5,7 @@ use super::draft::Draft;
 use super::json::JsonNode;
 use super::textures::{ChannelSelection, Textures};
 use bilux_import::FormatError;
-use bilux_import::as_metal::as_metal;
+use bilux_import::appearance::as_metal::as_metal;
 use bilux_math::colour::srgb_encode;
 use bilux_math::{Rgb, Vec2};
 use bilux_scene::Texture;

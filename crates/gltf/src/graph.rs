@@ -7,7 +7,7 @@ use super::extras::{CATEGORY, SURROUNDINGS};
 use super::json::JsonNode;
 use super::place;
 use bilux_import::FormatError;
-use bilux_import::oddities::Oddities;
+use bilux_import::input::oddities::Oddities;
 use bilux_math::{DMat4, DVec3};
 
 /// A node of the scene.

@@ -3,7 +3,7 @@
 use super::graph::Placed;
 use super::json::JsonNode;
 use bilux_import::FormatError;
-use bilux_import::oddities::Oddities;
+use bilux_import::input::oddities::Oddities;
 use bilux_math::{DVec3, Rgb};
 use bilux_scene::Spec;
 

@@ -8,8 +8,8 @@ use super::posed::Posed;
 use super::primitive::{self, NodeMesh, Part};
 use super::skin::Joints;
 use bilux_import::FormatError;
-use bilux_import::reading::Reading;
-use bilux_import::sink::Sink;
+use bilux_import::input::reading::Reading;
+use bilux_import::input::sink::Sink;
 use std::collections::HashMap;
 use std::sync::Arc;
 

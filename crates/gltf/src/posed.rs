@@ -5,8 +5,8 @@ use super::data::DataReader;
 use super::document::Document;
 use super::graph::Graph;
 use super::variants::Variants;
-use bilux_import::reading::Reading;
-use bilux_import::{FormatError, oddities::Oddities};
+use bilux_import::input::reading::Reading;
+use bilux_import::{FormatError, input::oddities::Oddities};
 
 /// What is read of a document before anything is placed.
 pub(super) struct Posed<'d> {

@@ -10,12 +10,12 @@ use super::pictures::Pictures;
 use super::posed::Posed;
 use super::primitive::Part;
 use super::{area_lights, cameras, container, extensions, lights, soundness, validate};
-use bilux_import::authors::program;
-use bilux_import::movement::whole_movement;
-use bilux_import::reading::{Reading, Source};
-use bilux_import::sharing::share_trees;
-use bilux_import::sink::Sink;
-use bilux_import::{FormatError, flat};
+use bilux_import::geometry::sharing::share_trees;
+use bilux_import::input::authors::program;
+use bilux_import::input::reading::{Reading, Source};
+use bilux_import::input::sink::Sink;
+use bilux_import::world::movement::whole_movement;
+use bilux_import::{FormatError, geometry::flat};
 use bilux_math::motion::Motion;
 use bilux_math::{DMat4, Transform};
 use bilux_scene::{Object, SceneBuilder, Span};
@@ -25,7 +25,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     let container = container::open(source)?;
     let mut sink = Sink::for_bare_files();
     for warning in &container.warnings {
-        sink.oddities.note(warning, || bilux_import::text::whole_file(source.name));
+        sink.oddities.note(warning, || bilux_import::bytes::text::whole_file(source.name));
     }
     let json = parse(reading, container.json, source)?;
     let root = JsonNode::root(&json, source.name);

@@ -5,7 +5,7 @@ use super::draft::Draft;
 use super::json::JsonNode;
 use super::textures::ChannelSelection;
 use bilux_import::FormatError;
-use bilux_import::images::mean;
+use bilux_import::input::images::mean;
 use bilux_math::Rgb;
 use bilux_math::transcendental::ln;
 use bilux_scene::Value;

@@ -5,7 +5,7 @@ use super::json::JsonNode;
 use super::place;
 use super::posed::Posed;
 use bilux_import::FormatError;
-use bilux_import::deformation::{Blends, are_mirrored, move_points, turned};
+use bilux_import::geometry::deformation::{Blends, are_mirrored, move_points, turned};
 use bilux_math::DMat4;
 use bilux_scene::Mesh;
 

@@ -8,8 +8,8 @@ use super::json::JsonNode;
 use super::pictures::{Pictures, decode, encoded, release};
 use super::{meshopt, validate};
 use bilux_import::FormatError;
-use bilux_import::oddities::Oddities;
-use bilux_import::reading::Reading;
+use bilux_import::input::oddities::Oddities;
+use bilux_import::input::reading::Reading;
 
 /// Reads the images that no material uses, and validates the bytes of all.
 pub(super) fn validate_images(

@@ -5,8 +5,8 @@ use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use base64::{DecodeError, Engine};
 use bilux_import::FormatError;
-use bilux_import::reading::{Reading, Source};
-use bilux_import::spellings::{percent_decoded, spellings};
+use bilux_import::bytes::spellings::{percent_decoded, spellings};
+use bilux_import::input::reading::{Reading, Source};
 use std::borrow::Cow;
 
 /// What a URI refers to.

@@ -2,7 +2,7 @@
 
 use super::json::JsonNode;
 use bilux_import::FormatError;
-use bilux_import::choice::named_or_numbered;
+use bilux_import::input::choice::named_or_numbered;
 
 const NAME: &str = "KHR_materials_variants";
 

@@ -12,8 +12,8 @@ mod tessellated;
 mod tessellation;
 
 use bilux_import::FormatError;
-use bilux_import::formats::{ReadFormat, SceneFormatEntry};
-use bilux_import::reading::{Reading, Source};
+use bilux_import::input::reading::{Reading, Source};
+use bilux_import::tables::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, SceneBuilder, UpHint};
 

@@ -6,7 +6,7 @@ use super::structure::styles::{Style, Styles};
 use super::tessellated::triangles;
 use super::tessellation::{Face, Patch, Shape, faces};
 use bilux_import::FormatError;
-use bilux_import::reading::Reading;
+use bilux_import::input::reading::Reading;
 use bilux_scene::Mesh;
 use std::collections::HashMap;
 use std::sync::Arc;

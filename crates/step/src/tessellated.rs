@@ -4,7 +4,7 @@ use super::part21::{Table, Values};
 use super::structure::styles::{Style, Styles};
 use super::tessellation::Patch;
 use bilux_import::FormatError;
-use bilux_import::reading::Reading;
+use bilux_import::input::reading::Reading;
 use bilux_math::DVec3;
 use std::collections::HashSet;
 

@@ -2,8 +2,8 @@
 
 use super::value::Text;
 use bilux_import::FormatError;
-use bilux_import::reading::Reading;
-use bilux_import::sink::Sink;
+use bilux_import::input::reading::Reading;
+use bilux_import::input::sink::Sink;
 use bilux_scene::Mesh;
 
 /// The material of a surface, and what it needs of the surface.
@@ -34,7 +34,7 @@ impl Context<'_, '_> {
     pub(super) fn finish_mesh(&mut self, mesh: &mut Mesh, _: &Worn) -> Result<(), FormatError> {
         if mesh.positions.iter().any(|p| !p.is_finite()) {
             let what = "a mesh has positions that are infinite or not numbers (NaN); they are kept";
-            let at = bilux_import::text::whole_file(&mesh.name.as_str().into());
+            let at = bilux_import::bytes::text::whole_file(&mesh.name.as_str().into());
             self.sink.oddities.note(what, || at);
         }
         Ok(())

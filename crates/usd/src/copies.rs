@@ -3,7 +3,7 @@
 use super::instancer::{Copies, Look};
 use super::scene::{Scene, State};
 use super::stage::Stage;
-use bilux_import::{FormatError, flat};
+use bilux_import::{FormatError, geometry::flat};
 use bilux_math::DMat4;
 use bilux_scene::Object;
 use std::collections::{HashMap, HashSet};

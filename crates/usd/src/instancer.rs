@@ -4,7 +4,7 @@ use super::primvars::{Interpolation, Place, Primvar};
 use super::stage::Stage;
 use super::value::{Array, Numbers};
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 use bilux_math::glam::DQuat;
 use bilux_math::{DMat4, DVec3};
 use std::collections::{HashMap, HashSet};

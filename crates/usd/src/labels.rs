@@ -3,7 +3,7 @@
 use super::stage::Stage;
 use super::value::{Text, Value};
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 
 /// The attributes with labels, before the name of their taxonomy.
 const PREFIX: &str = "semantics:labels:";

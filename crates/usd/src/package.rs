@@ -3,7 +3,7 @@
 use super::composition::root_of_package;
 use super::read;
 use bilux_import::FormatError;
-use bilux_import::reading::{Reading, Source};
+use bilux_import::input::reading::{Reading, Source};
 use bilux_scene::SceneBuilder;
 use std::path::Path;
 

@@ -1,8 +1,8 @@
 //! From faces with primvars to triangles.
 
 use super::primvars::{Place, Primvar};
-use bilux_import::normals::CornerNormals;
-use bilux_import::polygon::Triangulator;
+use bilux_import::geometry::normals::CornerNormals;
+use bilux_import::geometry::polygon::Triangulator;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::Mesh;
 

@@ -3,7 +3,7 @@
 use super::stage::Stage;
 use super::value::{Array, Value};
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 use std::sync::Arc;
 
 /// What each value is for.

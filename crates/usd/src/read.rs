@@ -6,9 +6,9 @@ use super::scene::Scene;
 use super::skeletons;
 use super::stage::Stage;
 use bilux_import::FormatError;
-use bilux_import::reading::{Reading, Source};
-use bilux_import::sharing::share_trees;
-use bilux_import::sink::Sink;
+use bilux_import::geometry::sharing::share_trees;
+use bilux_import::input::reading::{Reading, Source};
+use bilux_import::input::sink::Sink;
 use bilux_scene::error::nearest_name;
 use bilux_scene::{Animation, Axis, SceneBuilder, UpHint};
 

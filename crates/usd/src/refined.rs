@@ -7,7 +7,7 @@ use super::primvars::{Interpolation, Place, Primvar};
 use super::stage::Stage;
 use super::subdivision::Subdivision;
 use bilux_import::FormatError;
-use bilux_import::subdivision::{Attribute, Cage, Linear, PendingCage, Scheme};
+use bilux_import::geometry::subdivision::{Attribute, Cage, Linear, PendingCage, Scheme};
 use bilux_math::Vec3;
 
 /// From this sharpness on, an edge is as sharp as it can be. [OpenUSD, UsdGeomMesh]

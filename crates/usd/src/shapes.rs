@@ -2,7 +2,7 @@
 
 use super::stage::Stage;
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 use bilux_math::transcendental::sin_cos_f64;
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::Mesh;

@@ -5,7 +5,7 @@ use super::layer::{Layer, PrimSpec, Property};
 use super::list_op::ListOp;
 use super::value::{Array, Numbers, Text, Value};
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 use bilux_math::glam::DQuat;
 use bilux_scene::Span;
 use std::collections::{HashMap, HashSet};

@@ -3,8 +3,8 @@
 use super::stage::Stage;
 use super::value::Array;
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
-use bilux_import::subdivision::Linear;
+use bilux_import::bytes::budget::Budget;
+use bilux_import::geometry::subdivision::Linear;
 use std::sync::Arc;
 
 /// How a mesh is subdivided.
@@ -39,11 +39,11 @@ pub(super) struct Subdivision {
 
 impl Scheme {
     /// The scheme by which the surface is refined, if it is.
-    pub(super) fn refined(self) -> Option<bilux_import::subdivision::Scheme> {
+    pub(super) fn refined(self) -> Option<bilux_import::geometry::subdivision::Scheme> {
         match self {
             Scheme::None | Scheme::Bilinear => None,
-            Scheme::CatmullClark => Some(bilux_import::subdivision::Scheme::CatmullClark),
-            Scheme::Loop => Some(bilux_import::subdivision::Scheme::Loop),
+            Scheme::CatmullClark => Some(bilux_import::geometry::subdivision::Scheme::CatmullClark),
+            Scheme::Loop => Some(bilux_import::geometry::subdivision::Scheme::Loop),
         }
     }
 }

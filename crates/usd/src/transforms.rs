@@ -3,7 +3,7 @@
 use super::stage::Stage;
 use super::value::Value;
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 use bilux_math::glam::DQuat;
 use bilux_math::{DMat4, DVec3};
 

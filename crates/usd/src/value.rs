@@ -2,7 +2,7 @@
 
 use super::list_op::ListOp;
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 use std::sync::Arc;
 
 /// A name or a word that many specs share.

@@ -6,8 +6,8 @@ use super::scene::Scene;
 use super::shading::{self, Shaded};
 use super::stage::Stage;
 use bilux_import::FormatError;
-use bilux_import::displacement::Moved;
-use bilux_import::reading::plain_material;
+use bilux_import::geometry::displacement::Moved;
+use bilux_import::input::reading::plain_material;
 use bilux_math::Rgb;
 use bilux_scene::Spec;
 

@@ -9,7 +9,7 @@ use super::violation::Violation;
 const PAGE: &str = "ARCHITECTURE.md";
 
 /// The crates that it lists.
-const CRATES: &[&str] = &["crates/scene", "crates/transport"];
+const CRATES: &[&str] = &["crates/scene", "crates/transport", "crates/import"];
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let page = repository.file(PAGE).map_or("", |file| &file.text);

@@ -5,7 +5,7 @@ use super::repository::Repository;
 use super::violation::Violation;
 
 /// The crates that are divided so.
-const CRATES: &[&str] = &["crates/transport"];
+const CRATES: &[&str] = &["crates/transport", "crates/import"];
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let is_loose = |path: &str| {

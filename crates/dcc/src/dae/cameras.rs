@@ -4,7 +4,7 @@ use super::element::Element;
 use super::graph::Placed;
 use super::posed::Posed;
 use bilux_import::FormatError;
-use bilux_import::sink::Sink;
+use bilux_import::input::sink::Sink;
 use bilux_math::DVec3;
 use bilux_math::transcendental::{atan2_f64, tan_f64};
 use bilux_scene::Spec;

@@ -3,7 +3,7 @@
 use super::document::Document;
 use super::element::{Element, Number};
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 
 /// Rows of numbers.
 pub(super) struct Table<T> {

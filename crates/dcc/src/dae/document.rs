@@ -3,10 +3,10 @@
 use super::element::Element;
 use super::settings::Settings;
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
-use bilux_import::oddities::Oddities;
-use bilux_import::reading::Source;
-use bilux_import::spellings::percent_decoded;
+use bilux_import::bytes::budget::Budget;
+use bilux_import::bytes::spellings::percent_decoded;
+use bilux_import::input::oddities::Oddities;
+use bilux_import::input::reading::Source;
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -27,7 +27,7 @@ impl<'d> Document<'d> {
         oddities: &mut Oddities,
     ) -> Result<Document<'d>, FormatError> {
         if root.name() != "COLLADA" {
-            let name = bilux_import::names::shortened(root.name());
+            let name = bilux_import::input::names::shortened(root.name());
             return Err(root.error(format!("a Collada file begins with <COLLADA>, not <{name}>")));
         }
         let mut ids = HashMap::new();

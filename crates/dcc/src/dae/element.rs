@@ -1,11 +1,11 @@
 //! Elements of the file, and the numbers in them.
 
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
-use bilux_import::float::{parse_f32, parse_f64};
-use bilux_import::names::shortened;
-use bilux_import::text::quoted;
-use bilux_import::xml::Xml;
+use bilux_import::bytes::budget::Budget;
+use bilux_import::bytes::float::{parse_f32, parse_f64};
+use bilux_import::bytes::text::quoted;
+use bilux_import::bytes::xml::Xml;
+use bilux_import::input::names::shortened;
 use bilux_scene::Span;
 use roxmltree::{Node, NodeId};
 

@@ -7,7 +7,7 @@ use super::element::Element;
 use super::graph::Placed;
 use super::posed::Posed;
 use bilux_import::FormatError;
-use bilux_import::sink::Sink;
+use bilux_import::input::sink::Sink;
 use bilux_math::colour::srgb_decode;
 use bilux_math::{DVec3, Rgb};
 use bilux_scene::{Span, Spec};
@@ -76,7 +76,7 @@ fn colour(element: Element, posed: &Posed) -> Result<Rgb, FormatError> {
     let stated = element.child("color");
     // A colour of a few numbers needs no budget.
     let numbers = match stated {
-        Some(colour) => posed.numbers(colour, &mut bilux_import::budget::Budget::new(1 << 16))?,
+        Some(colour) => posed.numbers(colour, &mut bilux_import::bytes::budget::Budget::new(1 << 16))?,
         None => vec![1.0; 3],
     };
     let at = |i: usize| numbers.get(i).copied().filter(|c| *c > 0.0).unwrap_or(0.0).min(1e12) as f32;

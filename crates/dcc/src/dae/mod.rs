@@ -17,7 +17,7 @@ mod settings;
 mod targets;
 mod transforms;
 
-use bilux_import::formats::{ReadFormat, SceneFormatEntry};
+use bilux_import::tables::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, UpHint};
 

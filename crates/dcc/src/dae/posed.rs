@@ -4,7 +4,7 @@ use super::animation::Pose;
 use super::document::Document;
 use super::element::Element;
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 
 /// A document with what its animation gives to elements.
 pub(super) struct Posed<'p, 'd> {
@@ -28,7 +28,7 @@ impl Posed<'_, '_> {
     /// The first of them. One that is malformed, infinite or not a number (NaN) counts as missing.
     pub(super) fn number(&self, element: Element) -> Option<f64> {
         let animated = self.pose.of(element).iter().rev().find(|set| set.first.unwrap_or(0) == 0);
-        let stated = || bilux_import::float::parse_f64(element.words().next()?.as_bytes());
+        let stated = || bilux_import::bytes::float::parse_f64(element.words().next()?.as_bytes());
         let number = animated.and_then(|set| set.values.first().copied()).or_else(stated);
         number.filter(|number| number.is_finite())
     }

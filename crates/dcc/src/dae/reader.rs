@@ -8,11 +8,11 @@ use super::meshes::Meshes;
 use super::posed::Posed;
 use super::{cameras, lights};
 use bilux_import::FormatError;
-use bilux_import::movement::whole_movement;
-use bilux_import::reading::{Reading, Source};
-use bilux_import::sharing::share_trees;
-use bilux_import::sink::Sink;
-use bilux_import::xml::Xml;
+use bilux_import::bytes::xml::Xml;
+use bilux_import::geometry::sharing::share_trees;
+use bilux_import::input::reading::{Reading, Source};
+use bilux_import::input::sink::Sink;
+use bilux_import::world::movement::whole_movement;
 use bilux_math::DVec3;
 use bilux_scene::SceneBuilder;
 

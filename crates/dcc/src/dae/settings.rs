@@ -1,9 +1,9 @@
 //! What holds for the whole file: its axes, its unit, and the program that wrote it.
 
 use super::element::Element;
-use bilux_import::authors::program;
-use bilux_import::float::parse_f64;
-use bilux_import::oddities::Oddities;
+use bilux_import::bytes::float::parse_f64;
+use bilux_import::input::authors::program;
+use bilux_import::input::oddities::Oddities;
 use bilux_math::{DMat3, DMat4, DVec3};
 
 /// What the asset of a file says.

@@ -3,8 +3,8 @@
 use super::element::Element;
 use super::posed::Posed;
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
-use bilux_import::placement::rotation;
+use bilux_import::bytes::budget::Budget;
+use bilux_import::world::placement::rotation;
 use bilux_math::transcendental::sin_cos_f64;
 use bilux_math::{DMat4, DVec3};
 

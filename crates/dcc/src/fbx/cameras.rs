@@ -4,7 +4,7 @@ use super::attributes::{self, Attribute};
 use super::document::{Properties, display_name};
 use super::graph::{Graph, Placed};
 use super::posed::Posed;
-use bilux_import::oddities::Oddities;
+use bilux_import::input::oddities::Oddities;
 use bilux_math::DVec3;
 use bilux_math::transcendental::{atan2_f64, tan_f64};
 use bilux_scene::Spec;

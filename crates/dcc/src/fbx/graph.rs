@@ -4,8 +4,8 @@ use super::document::{Document, Index, ROOT};
 use super::posed::Posed;
 use super::transform::{Inherited, Local, geometric};
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
-use bilux_import::oddities::Oddities;
+use bilux_import::bytes::budget::Budget;
+use bilux_import::input::oddities::Oddities;
 use bilux_math::{DMat4, DVec3};
 use std::collections::HashMap;
 

@@ -7,7 +7,7 @@ use super::attributes::{self, Attribute};
 use super::document::{Properties, Settings, display_name};
 use super::graph::{Graph, Placed};
 use super::posed::Posed;
-use bilux_import::sink::Sink;
+use bilux_import::input::sink::Sink;
 use bilux_math::colour::srgb_decode;
 use bilux_math::{DVec3, Rgb};
 use bilux_scene::{Span, Spec};

@@ -17,7 +17,7 @@ mod subdivision;
 mod transform;
 mod tree;
 
-use bilux_import::formats::{ReadFormat, SceneFormatEntry};
+use bilux_import::tables::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, UpHint};
 

@@ -3,8 +3,8 @@
 use super::animation::Pose;
 use super::document::{Document, Index, Properties};
 use bilux_import::FormatError;
-use bilux_import::oddities::Oddities;
-use bilux_import::reading::Reading;
+use bilux_import::input::oddities::Oddities;
+use bilux_import::input::reading::Reading;
 
 /// A document with the values that its animation gives to properties.
 pub(super) struct Posed<'d> {

@@ -7,10 +7,10 @@ use super::posed::Posed;
 use super::tree::Tree;
 use super::{cameras, deform, lights};
 use bilux_import::FormatError;
-use bilux_import::movement::whole_movement;
-use bilux_import::reading::{Reading, Source};
-use bilux_import::sharing::share_trees;
-use bilux_import::sink::Sink;
+use bilux_import::geometry::sharing::share_trees;
+use bilux_import::input::reading::{Reading, Source};
+use bilux_import::input::sink::Sink;
+use bilux_import::world::movement::whole_movement;
 use bilux_scene::SceneBuilder;
 
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {

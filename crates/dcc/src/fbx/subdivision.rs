@@ -3,8 +3,8 @@
 use super::geometry::layers_named;
 use super::tree::{Node, Value};
 use bilux_import::FormatError;
-use bilux_import::polygon_mesh::{PolygonMesh, Workshop};
-use bilux_import::subdivision::{Cage, Scheme};
+use bilux_import::geometry::subdivision::{Cage, Scheme};
+use bilux_import::meshes::polygon_mesh::{PolygonMesh, Workshop};
 use bilux_math::{Rgb, Vec2};
 
 /// Levels for which an edge with a crease of 1 stays sharp.

@@ -5,8 +5,8 @@ use super::include::Part;
 use super::plain::{missing, plain_value};
 use super::reader::Native;
 use bilux_import::FormatError;
-use bilux_import::displacement::{Along, Displacement};
-use bilux_import::reading::Texels;
+use bilux_import::geometry::displacement::{Along, Displacement};
+use bilux_import::input::reading::Texels;
 use bilux_math::registry::{Entry, Parameter, ParameterKind, choice};
 use bilux_scene::{Reader, Spec};
 

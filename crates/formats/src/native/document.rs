@@ -1,7 +1,7 @@
 //! TOML with the location of every key and value.
 
 use bilux_import::FormatError;
-use bilux_import::text::{Places, whole_file};
+use bilux_import::bytes::text::{Places, whole_file};
 use bilux_scene::{SceneError, Span};
 use std::sync::Arc;
 use toml::de::{DeTable, DeValue};

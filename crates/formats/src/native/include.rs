@@ -2,7 +2,7 @@
 
 use super::document::{BYTES_PER_BYTE, Item, Table, TomlValue, parse};
 use bilux_import::FormatError;
-use bilux_import::reading::{Reading, Source};
+use bilux_import::input::reading::{Reading, Source};
 use bilux_scene::Span;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};

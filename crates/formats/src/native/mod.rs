@@ -25,8 +25,8 @@ pub use overlay::overlay;
 pub use schema::toml_schema;
 pub use shapes::{SHAPES, ShapeEntry};
 
-use bilux_import::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
-use bilux_import::frame::Frame;
+use bilux_import::tables::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
+use bilux_import::world::frame::Frame;
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, UpHint};
 

@@ -3,8 +3,8 @@
 use super::document::Item;
 use super::include::Part;
 use bilux_import::FormatError;
-use bilux_import::displacement::{Displacement, Moved};
-use bilux_import::reading::{Reading, default_material};
+use bilux_import::geometry::displacement::{Displacement, Moved};
+use bilux_import::input::reading::{Reading, default_material};
 use bilux_scene::{SceneBuilder, SceneError, Span};
 use std::collections::HashMap;
 use std::path::PathBuf;

@@ -6,8 +6,8 @@ use super::overlay;
 use super::plain::plain_value;
 use super::reader::Native;
 use bilux_import::FormatError;
-use bilux_import::reading::{Reading, Source};
-use bilux_import::text::whole_file;
+use bilux_import::bytes::text::whole_file;
+use bilux_import::input::reading::{Reading, Source};
 use bilux_scene::presets::mentions_light;
 use bilux_scene::{SceneBuilder, SceneError};
 

@@ -6,7 +6,7 @@ use super::pictures::{PICTURE, placed};
 use super::plain::{missing, plain_value};
 use super::reader::Native;
 use bilux_import::FormatError;
-use bilux_import::reading::Texels;
+use bilux_import::input::reading::Texels;
 use bilux_math::glam::DVec4;
 use bilux_math::registry::{Entry, ParameterKind};
 use bilux_math::{DMat4, Transform};
@@ -281,7 +281,7 @@ fn missing_kind<'k>(what: &str, kinds: impl Iterator<Item = &'k str>, table: &Ta
 fn check_texture(key: &str, kind: Option<ParameterKind>, item: &Item) -> Result<(), FormatError> {
     use ParameterKind::{ColourTexture, NumberTexture, Texture};
     let TomlValue::Text(name) = &item.node else { return Ok(()) };
-    let is_file = bilux_import::formats::extension(name.as_ref())
+    let is_file = bilux_import::tables::formats::extension(name.as_ref())
         .is_some_and(|extension| bilux_pictures::format_named(&extension).is_some());
     if is_file && matches!(kind, Some(ColourTexture { .. } | NumberTexture { .. } | Texture)) {
         let message = format!("a texture is written as {key} = {{ texture = {name:?} }}");

@@ -3,12 +3,12 @@
 use super::pictures::placement_keys;
 use super::words::{is_bare, number, quoted};
 use bilux_import::FormatError;
-use bilux_import::bake::name_of;
-use bilux_import::grids::file_of;
-use bilux_import::luminaires;
-use bilux_import::ply::encode;
-use bilux_import::text::whole_file;
-use bilux_import::writing::{UnusedNames, Writing};
+use bilux_import::bytes::text::whole_file;
+use bilux_import::output::bake::name_of;
+use bilux_import::output::ply::encode;
+use bilux_import::output::writing::{UnusedNames, Writing};
+use bilux_import::tables::grids::file_of;
+use bilux_import::tables::luminaires;
 use bilux_math::{Motion, MotionKey, Rgb};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::media::{ComputedDensity, Grid};

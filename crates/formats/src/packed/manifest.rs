@@ -1,7 +1,7 @@
 //! The manifest of a Collada archive, which names its scene. [Collada 1.5, appendix: zip archive]
 
 use bilux_import::FormatError;
-use bilux_import::reading::Reading;
+use bilux_import::input::reading::Reading;
 use bilux_scene::Span;
 use std::path::{Path, PathBuf};
 

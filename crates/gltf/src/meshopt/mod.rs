@@ -8,7 +8,7 @@ mod indices;
 
 use super::json::JsonNode;
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 use bytes::Broken;
 use filters::Filter;
 

@@ -3,7 +3,7 @@
 use super::{Check, Role, text, whole};
 use crate::json::JsonNode;
 use crate::uri;
-use bilux_import::oddities::Oddities;
+use bilux_import::input::oddities::Oddities;
 
 pub(super) fn source<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     match (node.get("uri"), node.get("bufferView")) {

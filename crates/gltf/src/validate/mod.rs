@@ -28,8 +28,8 @@ use super::accessor::Accessor;
 use super::document::Document;
 use super::json::JsonNode;
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
-use bilux_import::oddities::Oddities;
+use bilux_import::bytes::budget::Budget;
+use bilux_import::input::oddities::Oddities;
 pub(super) use images::compare as image;
 use std::collections::{HashMap, HashSet};
 

@@ -1,8 +1,8 @@
 //! Converts materials of any kind to `principled`, the only one that glTF can represent.
 
 use super::Document;
-use bilux_import::values::{self, number};
-use bilux_import::writing::Writing;
+use bilux_import::output::values::{self, number};
+use bilux_import::output::writing::Writing;
 use bilux_scene::Spec;
 
 /// Converts any material to `principled`; textures are checked after that.

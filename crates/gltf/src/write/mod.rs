@@ -11,8 +11,8 @@ mod pictures;
 
 use super::extras::{CATEGORY, SURROUNDINGS};
 use bilux_import::FormatError;
-use bilux_import::bake::name_of;
-use bilux_import::writing::Writing;
+use bilux_import::output::bake::name_of;
+use bilux_import::output::writing::Writing;
 use bilux_scene::{Mesh, Object, SceneBuilder, Visibility};
 use buffer::Buffer;
 use serde_json::{Map, Value as Json, json};

@@ -1,10 +1,10 @@
 //! Everything in the scene other than meshes: cameras, lights and animations.
 
 use super::Document;
-use bilux_import::camera_loss::{field_of_view, not_perspective, picture_aspect_ratio};
-use bilux_import::placement::looking;
-use bilux_import::values::{colour, number, vector};
-use bilux_import::writing::Writing;
+use bilux_import::output::values::{colour, number, vector};
+use bilux_import::output::writing::Writing;
+use bilux_import::world::camera_loss::{field_of_view, not_perspective, picture_aspect_ratio};
+use bilux_import::world::placement::looking;
 use bilux_math::{MotionKey, Rgb, Vec3};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::generators::shapes;

@@ -2,7 +2,7 @@
 
 use super::Document;
 use bilux_import::FormatError;
-use bilux_import::writing::Writing;
+use bilux_import::output::writing::Writing;
 use bilux_math::Rgb;
 use bilux_math::colour::srgb_encode;
 use bilux_pictures::{Alpha, ColourSpace, Picture, write_bytes};

@@ -3,9 +3,9 @@
 mod read;
 mod write;
 
-use bilux_import::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
-use bilux_import::frame::Frame;
-use bilux_import::text::Cursor;
+use bilux_import::bytes::text::Cursor;
+use bilux_import::tables::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
+use bilux_import::world::frame::Frame;
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, UpHint};
 
@@ -41,7 +41,7 @@ fn sniff(bytes: &[u8]) -> bool {
         loop {
             match cursor.word() {
                 b"" => break,
-                word if bilux_import::float::parse_f32(word).is_some() => numbers += 1,
+                word if bilux_import::bytes::float::parse_f32(word).is_some() => numbers += 1,
                 _ => others += 1,
             }
         }

@@ -1,10 +1,10 @@
 //! Reads `.asc`.
 
 use bilux_import::FormatError;
-use bilux_import::float::{parse_f32, parse_f64};
-use bilux_import::oddities::Oddities;
-use bilux_import::reading::{Reading, Source, plain_material};
-use bilux_import::text::{Cursor, Places, name_of, no_text, quoted};
+use bilux_import::bytes::float::{parse_f32, parse_f64};
+use bilux_import::bytes::text::{Cursor, Places, name_of, no_text, quoted};
+use bilux_import::input::oddities::Oddities;
+use bilux_import::input::reading::{Reading, Source, plain_material};
 use bilux_math::{DVec3, Rgb, Vec2, Vec3};
 use bilux_scene::{Mesh, Object, SceneBuilder, Spec, Value};
 use std::collections::HashMap;

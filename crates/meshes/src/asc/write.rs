@@ -1,11 +1,11 @@
 //! Writes `.asc`.
 
 use bilux_import::FormatError;
-use bilux_import::bake::{corners, flat_normal, in_place, name_of, warn_of_scene};
-use bilux_import::float::push_f32s;
-use bilux_import::reading::default_material;
-use bilux_import::values::{colour, number};
-use bilux_import::writing::Writing;
+use bilux_import::bytes::float::push_f32s;
+use bilux_import::input::reading::default_material;
+use bilux_import::output::bake::{corners, flat_normal, in_place, name_of, warn_of_scene};
+use bilux_import::output::values::{colour, number};
+use bilux_import::output::writing::Writing;
 use bilux_math::{Rgb, Vec2};
 use bilux_scene::{Mesh, Object, SceneBuilder, Spec, Value};
 

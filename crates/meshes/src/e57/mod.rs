@@ -2,7 +2,7 @@
 
 mod read;
 
-use bilux_import::formats::{ReadFormat, SceneFormatEntry};
+use bilux_import::tables::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, UpHint};
 

@@ -1,10 +1,10 @@
 //! Reads E57.
 
 use bilux_import::FormatError;
-use bilux_import::cloud::Cloud;
-use bilux_import::oddities::Oddities;
-use bilux_import::reading::{Reading, Source};
-use bilux_import::text::whole_file;
+use bilux_import::bytes::text::whole_file;
+use bilux_import::input::oddities::Oddities;
+use bilux_import::input::reading::{Reading, Source};
+use bilux_import::meshes::cloud::Cloud;
 use bilux_math::colour::srgb_decode;
 use bilux_math::{DVec3, Rgb};
 use bilux_pictures::guarded_decoding;

@@ -2,8 +2,8 @@
 
 use super::header::{Header, read_header, u16_at, u32_at};
 use bilux_import::FormatError;
-use bilux_import::reading::{Reading, Source};
-use bilux_import::text::whole_file;
+use bilux_import::bytes::text::whole_file;
+use bilux_import::input::reading::{Reading, Source};
 use bilux_pictures::guarded_decoding;
 use laz::{DecompressionSelection, LasZipDecompressor, LazItemType, LazVlr};
 use std::borrow::Cow;

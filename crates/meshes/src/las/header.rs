@@ -1,8 +1,8 @@
 //! The public header block of a LAS file. [LAS 1.4 R15, 2.4]
 
 use bilux_import::FormatError;
-use bilux_import::reading::Source;
-use bilux_import::text::whole_file;
+use bilux_import::bytes::text::whole_file;
+use bilux_import::input::reading::Source;
 use bilux_math::DVec3;
 
 pub(super) const SIGNATURE: &[u8] = b"LASF";

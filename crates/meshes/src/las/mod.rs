@@ -4,7 +4,7 @@ mod compressed;
 mod header;
 mod read;
 
-use bilux_import::formats::{ReadFormat, SceneFormatEntry};
+use bilux_import::tables::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, UpHint};
 

@@ -3,11 +3,11 @@
 use super::compressed::points;
 use super::header::{Header, u16_at, u32_at};
 use bilux_import::FormatError;
-use bilux_import::cloud::{Cloud, SAMPLES};
-use bilux_import::colours::{Greatest, Stored, decoded};
-use bilux_import::oddities::Oddities;
-use bilux_import::reading::{Reading, Source};
-use bilux_import::text::whole_file;
+use bilux_import::bytes::text::whole_file;
+use bilux_import::geometry::colours::{Greatest, Stored, decoded};
+use bilux_import::input::oddities::Oddities;
+use bilux_import::input::reading::{Reading, Source};
+use bilux_import::meshes::cloud::{Cloud, SAMPLES};
 use bilux_math::colour::srgb_decode;
 use bilux_math::{DVec3, Rgb};
 use bilux_scene::SceneBuilder;

@@ -1,10 +1,10 @@
 //! What one block of lines of an OBJ file says.
 
 use bilux_import::FormatError;
-use bilux_import::indexed_faces::Corner;
-use bilux_import::normals::Smoothing;
-use bilux_import::oddities::Oddities;
-use bilux_import::text::TextPosition;
+use bilux_import::bytes::text::TextPosition;
+use bilux_import::geometry::normals::Smoothing;
+use bilux_import::input::oddities::Oddities;
+use bilux_import::meshes::indexed_faces::Corner;
 use bilux_math::{Rgb, Vec2, Vec3};
 
 /// The contents of a block of lines. Line and face numbers are relative to its start.

@@ -1,7 +1,7 @@
 //! What programs mean by the specular keywords of MTL, told by the first line of a library. `Ks` and `Ns` stay what they are
 //! in those of all others: 3ds Max, Maya, Cinema 4D, Rhino, SketchUp and Wings 3D write Phong's.
 
-use bilux_import::text::Cursor;
+use bilux_import::bytes::text::Cursor;
 
 /// The habit of a program: `Ks` is the specular level, of which 0.5 is a reflection of 4%, and `Ns` says how rough the surface is.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,6 @@
 //! Indices of an OBJ file: they count from 1, or backwards from -1.
 
-use bilux_import::indexed_faces::NONE;
+use bilux_import::meshes::indexed_faces::NONE;
 
 /// An index from 0, or the distance to count back.
 #[derive(Debug, PartialEq)]

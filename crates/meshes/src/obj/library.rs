@@ -1,9 +1,9 @@
 //! A file of MTL.
 
 use super::habits::Habit;
-use bilux_import::oddities::Oddities;
-use bilux_import::reading::{Reading, Source};
-use bilux_import::text::{Cursor, Places};
+use bilux_import::bytes::text::{Cursor, Places};
+use bilux_import::input::oddities::Oddities;
+use bilux_import::input::reading::{Reading, Source};
 
 /// A library while it is read.
 pub(super) struct Library<'a, 'o, 'r> {

@@ -15,9 +15,9 @@ mod surface;
 mod transparency;
 mod write;
 
-use bilux_import::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
-use bilux_import::frame::Frame;
-use bilux_import::text::Cursor;
+use bilux_import::bytes::text::Cursor;
+use bilux_import::tables::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
+use bilux_import::world::frame::Frame;
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, UpHint};
 
@@ -52,7 +52,7 @@ fn sniff(bytes: &[u8]) -> bool {
     while !cursor.is_done() {
         match cursor.word() {
             word if word.is_empty() || word.starts_with(b"#") => cursor.end_line(),
-            b"v" | b"vn" | b"vt" => return bilux_import::float::parse_f32(cursor.word()).is_some(),
+            b"v" | b"vn" | b"vt" => return bilux_import::bytes::float::parse_f32(cursor.word()).is_some(),
             b"mtllib" => return true,
             b"o" | b"g" | b"s" | b"usemtl" => cursor.end_line(),
             _ => return false,

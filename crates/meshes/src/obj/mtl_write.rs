@@ -2,10 +2,10 @@
 
 use super::surface::NUMBERS;
 use bilux_import::FormatError;
-use bilux_import::float::{push_f32, push_f32s};
-use bilux_import::reading::default_material;
-use bilux_import::values::{MaterialSupport, as_principled, colour, number, texture};
-use bilux_import::writing::{UnusedNames, Writing};
+use bilux_import::bytes::float::{push_f32, push_f32s};
+use bilux_import::input::reading::default_material;
+use bilux_import::output::values::{MaterialSupport, as_principled, colour, number, texture};
+use bilux_import::output::writing::{UnusedNames, Writing};
 use bilux_math::Rgb;
 use bilux_scene::materials::{self, with_indices};
 use bilux_scene::{SceneBuilder, Spec, Value};

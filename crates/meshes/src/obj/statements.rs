@@ -3,12 +3,12 @@
 use super::block::{Backward, Block, End, StateChange, Stroke};
 use super::index::{Index, index};
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
-use bilux_import::colours::UNCOLOURED;
-use bilux_import::float::{parse_f32, parse_relative};
-use bilux_import::indexed_faces::{Corner, NONE};
-use bilux_import::normals::{BY_ANGLE, FLAT};
-use bilux_import::text::{Cursor, TextPosition, name_of, quoted, unquoted};
+use bilux_import::bytes::budget::Budget;
+use bilux_import::bytes::float::{parse_f32, parse_relative};
+use bilux_import::bytes::text::{Cursor, TextPosition, name_of, quoted, unquoted};
+use bilux_import::geometry::colours::UNCOLOURED;
+use bilux_import::geometry::normals::{BY_ANGLE, FLAT};
+use bilux_import::meshes::indexed_faces::{Corner, NONE};
 use bilux_math::{DVec3, Rgb, Vec2, Vec3};
 use bilux_scene::Span;
 use std::sync::Arc;

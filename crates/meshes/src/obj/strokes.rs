@@ -2,9 +2,9 @@
 
 use super::block::{End, Stroke};
 use bilux_import::FormatError;
-use bilux_import::indexed_faces::{IndexedFaces, NONE, Run, material_of};
-use bilux_import::reading::{Reading, Source};
-use bilux_import::sink::Sink;
+use bilux_import::input::reading::{Reading, Source};
+use bilux_import::input::sink::Sink;
+use bilux_import::meshes::indexed_faces::{IndexedFaces, NONE, Run, material_of};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Mesh, Object, Span};
 use std::collections::HashMap;

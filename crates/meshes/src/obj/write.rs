@@ -2,11 +2,11 @@
 
 use super::mtl_write::{one_line, write_library};
 use bilux_import::FormatError;
-use bilux_import::bake::{in_place, name_of, warn_of_scene};
-use bilux_import::colours::encoded;
-use bilux_import::float::push_f32s;
-use bilux_import::frame::statement;
-use bilux_import::writing::Writing;
+use bilux_import::bytes::float::push_f32s;
+use bilux_import::geometry::colours::encoded;
+use bilux_import::output::bake::{in_place, name_of, warn_of_scene};
+use bilux_import::output::writing::Writing;
+use bilux_import::world::frame::statement;
 use bilux_scene::{Mesh, SceneBuilder};
 use std::io::Write;
 

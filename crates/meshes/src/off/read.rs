@@ -2,14 +2,14 @@
 
 use super::columns::{Columns, FLAT_COMMENT};
 use bilux_import::FormatError;
-use bilux_import::colours::{Stored, decode};
-use bilux_import::float::{parse_f32, parse_relative};
-use bilux_import::indexed_faces::{Corner, FaceColour, IndexedFaces, NONE, Run, assemble};
-use bilux_import::normals::{BY_ANGLE, FLAT, Smoothing};
-use bilux_import::oddities::Oddities;
-use bilux_import::reading::{Reading, Source};
-use bilux_import::sink::Sink;
-use bilux_import::text::{Cursor, Places, no_text, quoted};
+use bilux_import::bytes::float::{parse_f32, parse_relative};
+use bilux_import::bytes::text::{Cursor, Places, no_text, quoted};
+use bilux_import::geometry::colours::{Stored, decode};
+use bilux_import::geometry::normals::{BY_ANGLE, FLAT, Smoothing};
+use bilux_import::input::oddities::Oddities;
+use bilux_import::input::reading::{Reading, Source};
+use bilux_import::input::sink::Sink;
+use bilux_import::meshes::indexed_faces::{Corner, FaceColour, IndexedFaces, NONE, Run, assemble};
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::SceneBuilder;
 use std::collections::HashMap;

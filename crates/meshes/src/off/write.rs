@@ -2,12 +2,12 @@
 
 use super::columns::{Columns, FLAT_COMMENT};
 use bilux_import::FormatError;
-use bilux_import::bake::{in_place, warn_of_materials, warn_of_scene};
-use bilux_import::colours::encoded;
-use bilux_import::float::push_f32s;
-use bilux_import::frame::statement;
-use bilux_import::text::whole_file;
-use bilux_import::writing::Writing;
+use bilux_import::bytes::float::push_f32s;
+use bilux_import::bytes::text::whole_file;
+use bilux_import::geometry::colours::encoded;
+use bilux_import::output::bake::{in_place, warn_of_materials, warn_of_scene};
+use bilux_import::output::writing::Writing;
+use bilux_import::world::frame::statement;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{Mesh, SceneBuilder};
 use std::borrow::Cow;

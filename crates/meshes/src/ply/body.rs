@@ -2,9 +2,9 @@
 
 use super::header::{Element, Encoding, Scalar};
 use bilux_import::FormatError;
-use bilux_import::float::{parse_f32, parse_f64};
-use bilux_import::reading::Source;
-use bilux_import::text::{Cursor, Places, quoted};
+use bilux_import::bytes::float::{parse_f32, parse_f64};
+use bilux_import::bytes::text::{Cursor, Places, quoted};
+use bilux_import::input::reading::Source;
 
 /// Iterates over the numbers of the body.
 pub(super) struct Body<'a> {

@@ -4,7 +4,7 @@ use super::header::{Element, Property, Scalar};
 use super::reader::Ply;
 use super::slots::{FaceSlots, lists_uvs, lists_vertices};
 use bilux_import::FormatError;
-use bilux_import::indexed_faces::{Corner, FaceColour, NONE};
+use bilux_import::meshes::indexed_faces::{Corner, FaceColour, NONE};
 use bilux_math::{Rgb, Vec2};
 
 impl Ply<'_, '_, '_> {

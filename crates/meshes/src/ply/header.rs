@@ -1,9 +1,9 @@
 //! The header: the elements, their counts and their properties.
 
 use bilux_import::FormatError;
-use bilux_import::colours::Stored;
-use bilux_import::reading::Source;
-use bilux_import::text::{Cursor, Places, name_of, quoted};
+use bilux_import::bytes::text::{Cursor, Places, name_of, quoted};
+use bilux_import::geometry::colours::Stored;
+use bilux_import::input::reading::Source;
 
 /// The encoding of the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -12,8 +12,8 @@ mod strokes;
 mod textures;
 mod write;
 
-use bilux_import::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
-use bilux_import::frame::Frame;
+use bilux_import::tables::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
+use bilux_import::world::frame::Frame;
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, UpHint};
 

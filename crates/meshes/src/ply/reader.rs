@@ -3,12 +3,12 @@
 use super::body::Body;
 use super::header::{Element, Property};
 use bilux_import::FormatError;
-use bilux_import::colours::Stored;
-use bilux_import::indexed_faces::IndexedFaces;
-use bilux_import::normals::Smoothing;
-use bilux_import::oddities::Oddities;
-use bilux_import::reading::{Reading, Source};
-use bilux_import::text::{Places, quoted};
+use bilux_import::bytes::text::{Places, quoted};
+use bilux_import::geometry::colours::Stored;
+use bilux_import::geometry::normals::Smoothing;
+use bilux_import::input::oddities::Oddities;
+use bilux_import::input::reading::{Reading, Source};
+use bilux_import::meshes::indexed_faces::IndexedFaces;
 use bilux_math::Vec2;
 use std::collections::HashMap;
 

@@ -1,7 +1,7 @@
 //! The meaning of vertex properties.
 
 use super::header::{Element, Property, Scalar};
-use bilux_import::colours::Stored;
+use bilux_import::geometry::colours::Stored;
 
 /// The known meanings of vertex properties, with the names that programs use for them.
 pub(super) const MEANINGS: [&[&str]; 14] = [

@@ -4,8 +4,8 @@
 use super::header::Element;
 use super::reader::{Ply, Splats};
 use bilux_import::FormatError;
-use bilux_import::colours::{decode, decoded};
-use bilux_import::indexed_faces::NONE;
+use bilux_import::geometry::colours::{decode, decoded};
+use bilux_import::meshes::indexed_faces::NONE;
 use bilux_math::transcendental::exp;
 use bilux_math::{DVec3, Rgb, Vec3};
 use std::ops::Range;

@@ -3,8 +3,8 @@
 use super::header::Element;
 use super::reader::Ply;
 use bilux_import::FormatError;
-use bilux_import::indexed_faces::NONE;
-use bilux_import::reading::plain_material;
+use bilux_import::input::reading::plain_material;
+use bilux_import::meshes::indexed_faces::NONE;
 use bilux_scene::{Mesh, Object, SceneBuilder};
 use std::sync::Arc;
 

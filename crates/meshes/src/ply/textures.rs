@@ -2,8 +2,8 @@
 
 use super::reader::Ply;
 use bilux_import::FormatError;
-use bilux_import::indexed_faces::{NONE, Run};
-use bilux_import::reading::{Texels, plain_material};
+use bilux_import::input::reading::{Texels, plain_material};
+use bilux_import::meshes::indexed_faces::{NONE, Run};
 use bilux_scene::{SceneBuilder, Texture, Value};
 use std::collections::HashMap;
 use std::sync::Arc;

@@ -1,11 +1,11 @@
 //! Writes PLY.
 
 use bilux_import::FormatError;
-use bilux_import::bake::{in_place, warn_of_materials, warn_of_scene};
-use bilux_import::frame::statement;
-use bilux_import::ply::encode;
-use bilux_import::text::whole_file;
-use bilux_import::writing::Writing;
+use bilux_import::bytes::text::whole_file;
+use bilux_import::output::bake::{in_place, warn_of_materials, warn_of_scene};
+use bilux_import::output::ply::encode;
+use bilux_import::output::writing::Writing;
+use bilux_import::world::frame::statement;
 use bilux_scene::{Mesh, SceneBuilder};
 use std::borrow::Cow;
 

@@ -1,12 +1,12 @@
 //! Reads text STL.
 
 use bilux_import::FormatError;
-use bilux_import::colours::{Greatest, Stored, UNCOLOURED, decoded};
-use bilux_import::float::{parse_f32, parse_relative};
-use bilux_import::oddities::Oddities;
-use bilux_import::polygon::Triangulator;
-use bilux_import::reading::{Reading, Source};
-use bilux_import::text::{Cursor, Places, is_comment, name_of, quoted};
+use bilux_import::bytes::float::{parse_f32, parse_relative};
+use bilux_import::bytes::text::{Cursor, Places, is_comment, name_of, quoted};
+use bilux_import::geometry::colours::{Greatest, Stored, UNCOLOURED, decoded};
+use bilux_import::geometry::polygon::Triangulator;
+use bilux_import::input::oddities::Oddities;
+use bilux_import::input::reading::{Reading, Source};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Mesh, Object, SceneBuilder};
 use std::sync::Arc;

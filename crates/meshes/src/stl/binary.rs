@@ -2,9 +2,9 @@
 
 use super::facet_colours::FacetColours;
 use bilux_import::FormatError;
-use bilux_import::oddities::Oddities;
-use bilux_import::reading::{Reading, Source};
-use bilux_import::text::whole_file;
+use bilux_import::bytes::text::whole_file;
+use bilux_import::input::oddities::Oddities;
+use bilux_import::input::reading::{Reading, Source};
 use bilux_math::{DVec3, Rgb, Vec3};
 use bilux_scene::{Mesh, Object, SceneBuilder};
 use std::sync::Arc;

@@ -1,8 +1,8 @@
 //! Colours in the two bytes after each triangle of a binary STL, by the two conventions that there are: that of VisCAM
 //! and SolidView, and that of Materialise Magics.
 
-use bilux_import::colours::decoded;
-use bilux_import::oddities::Oddities;
+use bilux_import::geometry::colours::decoded;
+use bilux_import::input::oddities::Oddities;
 use bilux_math::Rgb;
 use bilux_scene::Span;
 

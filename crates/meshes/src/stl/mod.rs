@@ -6,10 +6,10 @@ mod facet_colours;
 mod write;
 
 use bilux_import::FormatError;
-use bilux_import::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
-use bilux_import::frame::Frame;
-use bilux_import::reading::{Reading, Source, plain_material};
-use bilux_import::text::{is_comment, plain, plain_size, whole_file};
+use bilux_import::bytes::text::{is_comment, plain, plain_size, whole_file};
+use bilux_import::input::reading::{Reading, Source, plain_material};
+use bilux_import::tables::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
+use bilux_import::world::frame::Frame;
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, SceneBuilder, UpHint};

@@ -2,10 +2,10 @@
 
 use super::binary::HEADER;
 use bilux_import::FormatError;
-use bilux_import::bake::{corners, flat_normal, in_place, name_of, warn_of_materials, warn_of_scene};
-use bilux_import::float::push_f32s;
-use bilux_import::text::whole_file;
-use bilux_import::writing::Writing;
+use bilux_import::bytes::float::push_f32s;
+use bilux_import::bytes::text::whole_file;
+use bilux_import::output::bake::{corners, flat_normal, in_place, name_of, warn_of_materials, warn_of_scene};
+use bilux_import::output::writing::Writing;
 use bilux_math::Vec3;
 use bilux_scene::{Mesh, SceneBuilder};
 

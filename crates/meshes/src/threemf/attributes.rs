@@ -1,6 +1,6 @@
 //! The attributes of an element, and the types of their values.
 
-use bilux_import::float::{parse_f32, parse_f64};
+use bilux_import::bytes::float::{parse_f32, parse_f64};
 use bilux_math::DMat4;
 use bilux_math::glam::DVec4;
 use std::borrow::Cow;

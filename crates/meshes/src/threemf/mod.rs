@@ -27,9 +27,9 @@ mod write;
 mod xml;
 
 use bilux_import::FormatError;
-use bilux_import::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
-use bilux_import::frame::Frame;
-use bilux_import::reading::{Reading, Source};
+use bilux_import::input::reading::{Reading, Source};
+use bilux_import::tables::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
+use bilux_import::world::frame::Frame;
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, SceneBuilder, UpHint};
 use package::Package;

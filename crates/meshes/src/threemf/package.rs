@@ -2,9 +2,9 @@
 
 use super::xml::{Level, Xml};
 use bilux_import::FormatError;
-use bilux_import::oddities::Oddities;
-use bilux_import::reading::{Reading, Source};
-use bilux_import::text::whole_file;
+use bilux_import::bytes::text::whole_file;
+use bilux_import::input::oddities::Oddities;
+use bilux_import::input::reading::{Reading, Source};
 use bilux_scene::Span;
 use std::collections::HashMap;
 use std::io::{self, Read};

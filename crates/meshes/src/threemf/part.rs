@@ -5,8 +5,8 @@ use super::namespaces::{DRAFT, Namespace};
 use super::package::resolved;
 use super::xml::{Element, Level, Xml};
 use bilux_import::FormatError;
-use bilux_import::oddities::Oddities;
-use bilux_import::reading::Reading;
+use bilux_import::input::oddities::Oddities;
+use bilux_import::input::reading::Reading;
 use std::sync::Arc;
 
 /// Reads a part into the model.

@@ -3,9 +3,9 @@
 use super::model::Model;
 use super::package::Package;
 use bilux_import::FormatError;
-use bilux_import::images::SampleMeaning;
-use bilux_import::reading::Reading;
-use bilux_import::sink::Sink;
+use bilux_import::input::images::SampleMeaning;
+use bilux_import::input::reading::Reading;
+use bilux_import::input::sink::Sink;
 use bilux_math::Rgb;
 use bilux_scene::Texture;
 use bilux_scene::texture::{Channel, Image, Texels};

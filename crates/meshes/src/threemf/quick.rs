@@ -1,7 +1,7 @@
 //! Vertices and triangles as nearly all programs write them, read from the bytes without the XML parser: it reads whatever is unusual here.
 
 use super::attributes::digits;
-use bilux_import::float::parse_f32;
+use bilux_import::bytes::float::parse_f32;
 use bilux_math::Vec3;
 
 /// The attributes of a triangle.

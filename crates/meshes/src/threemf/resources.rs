@@ -9,7 +9,7 @@ use super::namespaces::Namespace;
 use super::part::{PartReader, undeclared};
 use super::xml::{Element, Level};
 use bilux_import::FormatError;
-use bilux_import::text::quoted;
+use bilux_import::bytes::text::quoted;
 use bilux_math::{Rgb, Vec2};
 use bilux_scene::texture::{Filter, Wrap};
 

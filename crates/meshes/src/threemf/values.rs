@@ -3,7 +3,7 @@
 use super::attributes::{integer, matrix, number, unescaped};
 use super::xml::Element;
 use bilux_import::FormatError;
-use bilux_import::text::quoted;
+use bilux_import::bytes::text::quoted;
 use bilux_math::DMat4;
 use std::borrow::Cow;
 

@@ -3,7 +3,7 @@
 use super::attributes::Attributes;
 use super::namespaces::{Namespace, Scopes};
 use bilux_import::FormatError;
-use bilux_import::text::quoted;
+use bilux_import::bytes::text::quoted;
 use bilux_scene::Span;
 use quick_xml::events::Event;
 use quick_xml::{Error, Reader};

@@ -1,6 +1,6 @@
 //! Finds the meaning of the numbers on a line.
 
-use bilux_import::text::Cursor;
+use bilux_import::bytes::text::Cursor;
 
 /// The maximum count of numbers that are used on a line.
 pub(super) const MAX: usize = 16;
@@ -82,7 +82,7 @@ pub(super) fn looks_like_points(bytes: &[u8]) -> bool {
         if words.is_empty() || line.starts_with(b"#") || line.starts_with(b"//") {
             continue;
         }
-        if !words.iter().all(|word| bilux_import::float::parse_f32(word).is_some()) {
+        if !words.iter().all(|word| bilux_import::bytes::float::parse_f32(word).is_some()) {
             return false;
         }
         let is_count = lines == 0 && words.len() == 1;
@@ -113,7 +113,7 @@ impl Comma {
             return None;
         }
         let words = words_of(line, Comma::IsPoint);
-        let is_number = |word: &&[u8]| bilux_import::float::parse_f32(word).is_some();
+        let is_number = |word: &&[u8]| bilux_import::bytes::float::parse_f32(word).is_some();
         let is_point = words.len() >= 3 && words.iter().all(is_number);
         Some(if is_point { Comma::IsPoint } else { Comma::Separates })
     }

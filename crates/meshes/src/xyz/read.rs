@@ -2,12 +2,12 @@
 
 use super::columns::{Columns, Comma, MAX, words_of};
 use bilux_import::FormatError;
-use bilux_import::cloud::{Cloud, SAMPLES};
-use bilux_import::colours::{Stored, UNCOLOURED, decode};
-use bilux_import::float::parse_f64;
-use bilux_import::oddities::Oddities;
-use bilux_import::reading::{Reading, Source};
-use bilux_import::text::{Cursor, Places, no_text, quoted};
+use bilux_import::bytes::float::parse_f64;
+use bilux_import::bytes::text::{Cursor, Places, no_text, quoted};
+use bilux_import::geometry::colours::{Stored, UNCOLOURED, decode};
+use bilux_import::input::oddities::Oddities;
+use bilux_import::input::reading::{Reading, Source};
+use bilux_import::meshes::cloud::{Cloud, SAMPLES};
 use bilux_math::colour::srgb_decode;
 use bilux_math::{DVec3, Rgb};
 use bilux_scene::SceneBuilder;

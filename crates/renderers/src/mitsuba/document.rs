@@ -2,8 +2,8 @@
 
 use super::plugin::{Plugin, Property, Value};
 use bilux_import::FormatError;
-use bilux_import::names::unknown;
-use bilux_import::reading::Reading;
+use bilux_import::input::names::unknown;
+use bilux_import::input::reading::Reading;
 use bilux_scene::Span;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};

@@ -3,7 +3,7 @@
 use super::maker::Maker;
 use super::plugin::Plugin;
 use bilux_import::FormatError;
-use bilux_import::names::unknown;
+use bilux_import::input::names::unknown;
 use bilux_scene::{Parameters, Value};
 use std::rc::Rc;
 

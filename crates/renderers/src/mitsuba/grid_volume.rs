@@ -1,6 +1,6 @@
 //! Volumes of Mitsuba that files of voxels give, also with a colour for each voxel: Bilux has one colour for a whole medium.
 
-use bilux_import::filling::Density;
+use bilux_import::appearance::filling::Density;
 use bilux_math::{DVec3, Rgb};
 use bilux_scene::media::Grid;
 use std::sync::Arc;

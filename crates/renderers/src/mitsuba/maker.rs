@@ -4,9 +4,9 @@ use super::document::{Document, Files};
 use super::plugin::{Plugin, Value as Given};
 use super::values::GivenColour;
 use bilux_import::FormatError;
-use bilux_import::oddities::Oddities;
-use bilux_import::reading::Reading;
-use bilux_import::texture_or_value::TextureOrValue;
+use bilux_import::appearance::texture_or_value::TextureOrValue;
+use bilux_import::input::oddities::Oddities;
+use bilux_import::input::reading::Reading;
 use bilux_math::Rgb;
 use bilux_scene::{Span, Spec, Texture, Value};
 use std::collections::HashMap;
@@ -117,7 +117,8 @@ impl<'p, 'o> Maker<'p, 'o> {
         let colour = match (given, meaning) {
             // A light that is the same at all wavelengths is not quite white.
             (GivenColour::Even(value), Meaning::Light) => {
-                bilux_import::spectra::Spectrum(vec![[300.0, 1.0], [900.0, 1.0]]).emission() * *value
+                bilux_import::appearance::spectra::Spectrum(vec![[300.0, 1.0], [900.0, 1.0]]).emission()
+                    * *value
             }
             (GivenColour::Even(value), _) => Rgb::grey(*value),
             (GivenColour::Rgb(colour), _) => *colour,

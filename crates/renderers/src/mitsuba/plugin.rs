@@ -3,8 +3,8 @@
 use super::transforms::Placement;
 use super::values::GivenColour;
 use bilux_import::FormatError;
-use bilux_import::names::{shortened, unknown};
-use bilux_import::oddities::Oddities;
+use bilux_import::input::names::{shortened, unknown};
+use bilux_import::input::oddities::Oddities;
 use bilux_math::DVec3;
 use bilux_scene::error::nearest_name;
 use bilux_scene::{SceneError, Span};

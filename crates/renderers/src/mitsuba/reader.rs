@@ -11,12 +11,12 @@ use super::sensors::cameras;
 use super::textures;
 use super::variables::Variables;
 use bilux_import::FormatError;
-use bilux_import::includes::Includes;
-use bilux_import::oddities::Oddities;
-use bilux_import::reading::{Reading, Source};
-use bilux_import::sharing::share_trees;
-use bilux_import::sink::Sink;
-use bilux_import::text::whole_file;
+use bilux_import::bytes::text::whole_file;
+use bilux_import::geometry::sharing::share_trees;
+use bilux_import::input::includes::Includes;
+use bilux_import::input::oddities::Oddities;
+use bilux_import::input::reading::{Reading, Source};
+use bilux_import::input::sink::Sink;
 use bilux_scene::{Parameters, SceneBuilder};
 use std::path::Path;
 

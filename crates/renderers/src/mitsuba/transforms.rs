@@ -2,7 +2,7 @@
 
 use super::values::{numbers, numbers_of};
 use bilux_import::FormatError;
-use bilux_import::placement::{look_at, rotation};
+use bilux_import::world::placement::{look_at, rotation};
 use bilux_math::motion::{Motion, MotionKey};
 use bilux_math::transcendental::sin_cos_f64;
 use bilux_math::{DMat3, DMat4, DVec3, Transform};

@@ -1,8 +1,8 @@
 //! Numbers and colours as text.
 
 use bilux_import::FormatError;
-use bilux_import::names::shortened;
-use bilux_import::spectra::Spectrum;
+use bilux_import::appearance::spectra::Spectrum;
+use bilux_import::input::names::shortened;
 use bilux_math::Rgb;
 use bilux_math::colour::srgb_decode;
 use bilux_scene::Span;

@@ -1,7 +1,7 @@
 //! Variables such as `$spp`: their defaults, and the values that the user gives.
 
 use bilux_import::FormatError;
-use bilux_import::names::{shortened, unknown};
+use bilux_import::input::names::{shortened, unknown};
 use bilux_scene::Span;
 use std::collections::BTreeMap;
 

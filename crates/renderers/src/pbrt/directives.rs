@@ -9,9 +9,9 @@ use super::parser::{Parser, Scope};
 use super::shapes;
 use super::state::{MaterialKey, TARGETS};
 use bilux_import::FormatError;
-use bilux_import::names::unknown;
-use bilux_import::spectra::colours::SPACES;
-use bilux_import::text::name_of;
+use bilux_import::appearance::spectra::colours::SPACES;
+use bilux_import::bytes::text::name_of;
+use bilux_import::input::names::unknown;
 use bilux_scene::SceneError;
 use std::sync::Arc;
 

@@ -3,8 +3,8 @@
 use super::light_maker::{LightMaker, picture_name};
 use super::parameters::ParameterList;
 use bilux_import::FormatError;
-use bilux_import::environment_maps::{Mapping, by_longitude, looked_up};
-use bilux_import::texture_or_value::TextureOrValue;
+use bilux_import::appearance::environment_maps::{Mapping, by_longitude, looked_up};
+use bilux_import::appearance::texture_or_value::TextureOrValue;
 use bilux_math::transcendental::sin_cos_f64;
 use bilux_math::{DMat4, DVec3};
 use bilux_scene::{Spec, Texture, Value};

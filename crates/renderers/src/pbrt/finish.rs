@@ -8,9 +8,9 @@ use super::placing::Placer;
 use super::shapes::ShapeCache;
 use super::surfaces::Surfaces;
 use bilux_import::FormatError;
-use bilux_import::names::unknown;
-use bilux_import::sharing::share_trees;
-use bilux_import::sink::Sink;
+use bilux_import::geometry::sharing::share_trees;
+use bilux_import::input::names::unknown;
+use bilux_import::input::sink::Sink;
 use bilux_scene::{SceneBuilder, Span};
 
 /// The scene that a document describes, with the shapes that its files have in common.

@@ -3,7 +3,7 @@
 use super::loader::Loader;
 use super::parameters::ParameterList;
 use bilux_import::FormatError;
-use bilux_import::filling::{Density, Temperature};
+use bilux_import::appearance::filling::{Density, Temperature};
 use bilux_math::{DMat4, DVec3, Rgb, Transform, Vec3};
 use bilux_scene::media::{BLOCK_VOXELS, Faults, Grid};
 use bilux_scene::{Spec, Value};

@@ -1,8 +1,8 @@
 //! Splits a file into words, quoted strings and brackets with their locations. `#` begins a comment.
 
 use bilux_import::FormatError;
-use bilux_import::float::parse_f32;
-use bilux_import::text::{Places, quoted};
+use bilux_import::bytes::float::parse_f32;
+use bilux_import::bytes::text::{Places, quoted};
 use bilux_scene::Span;
 use std::borrow::Cow;
 use std::sync::Arc;

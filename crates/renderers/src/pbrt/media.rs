@@ -4,7 +4,7 @@ use super::grid_media::GridMaker;
 use super::loader::{Loader, SpectrumType};
 use super::parameters::ParameterList;
 use bilux_import::FormatError;
-use bilux_import::filling::{Density, Medium};
+use bilux_import::appearance::filling::{Density, Medium};
 use bilux_math::{DMat4, Rgb};
 
 /// Measured media: scattering (reduced) and absorption per millimetre. [Jensen 2001, figure 5]

@@ -2,7 +2,7 @@
 
 use super::document::ObjectInstance;
 use super::state::Matrices;
-use bilux_import::oddities::Oddities;
+use bilux_import::input::oddities::Oddities;
 use bilux_math::motion::{Motion, MotionKey};
 use bilux_math::{DMat4, Transform};
 use bilux_scene::Span;

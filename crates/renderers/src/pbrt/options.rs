@@ -3,8 +3,8 @@
 use super::entity::Entity;
 use super::state::Matrices;
 use bilux_import::FormatError;
-use bilux_import::names::unknown;
-use bilux_import::oddities::Oddities;
+use bilux_import::input::names::unknown;
+use bilux_import::input::oddities::Oddities;
 use bilux_scene::{Parameters, Span, Value};
 
 /// All options, the last of each kind.

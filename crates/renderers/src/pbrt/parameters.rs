@@ -2,10 +2,10 @@
 
 use super::lexer::{Lexer, Token, number_of, shown};
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
-use bilux_import::names::{shortened, unknown};
-use bilux_import::oddities::Oddities;
-use bilux_import::spectra::colours::ColourSpace;
+use bilux_import::appearance::spectra::colours::ColourSpace;
+use bilux_import::bytes::budget::Budget;
+use bilux_import::input::names::{shortened, unknown};
+use bilux_import::input::oddities::Oddities;
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::Span;
 use bilux_scene::error::nearest_name;

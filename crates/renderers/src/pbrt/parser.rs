@@ -4,7 +4,7 @@ use super::document::{Document, Piece};
 use super::loader::Loader;
 use super::shapes::ShapeCache;
 use super::state::{Matrices, State};
-use bilux_import::includes::Includes;
+use bilux_import::input::includes::Includes;
 use bilux_scene::Span;
 use std::collections::HashMap;
 

@@ -6,9 +6,9 @@ use super::lexer::Lexer;
 use super::loader::Loader;
 use super::parser::Parser;
 use bilux_import::FormatError;
-use bilux_import::includes::Includes;
-use bilux_import::reading::{Reading, Source};
-use bilux_import::text::whole_file;
+use bilux_import::bytes::text::whole_file;
+use bilux_import::input::includes::Includes;
+use bilux_import::input::reading::{Reading, Source};
 use bilux_scene::SceneBuilder;
 use std::path::Path;
 

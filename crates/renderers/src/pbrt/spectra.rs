@@ -1,6 +1,6 @@
 //! The spectra that have names.
 
-use bilux_import::spectra::colours::of_chromaticity;
+use bilux_import::appearance::spectra::colours::of_chromaticity;
 use bilux_math::Rgb;
 use bilux_scene::materials::glass_indices;
 

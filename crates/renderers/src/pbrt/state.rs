@@ -1,7 +1,7 @@
 //! The graphics state, which applies to the following directives.
 
 use super::parameters::Parameter;
-use bilux_import::spectra::colours::ColourSpace;
+use bilux_import::appearance::spectra::colours::ColourSpace;
 use bilux_math::DMat4;
 use std::sync::Arc;
 

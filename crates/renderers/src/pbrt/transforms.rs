@@ -3,8 +3,8 @@
 use super::directive::Directive;
 use super::lexer::{Token, shown};
 use bilux_import::FormatError;
-use bilux_import::names::unknown;
-use bilux_import::placement::{look_at, rotation};
+use bilux_import::input::names::unknown;
+use bilux_import::world::placement::{look_at, rotation};
 use bilux_math::glam::DVec4;
 use bilux_math::{DMat4, DVec3};
 

@@ -1,6 +1,6 @@
 //! Commands in a file, as a shell would split them. None is ever run: what a few of them would write is made here.
 
-use bilux_import::text::name_of;
+use bilux_import::bytes::text::name_of;
 use bilux_scene::Span;
 use std::rc::Rc;
 

@@ -2,7 +2,7 @@
 
 use super::statement::{Statement, parse};
 use bilux_import::FormatError;
-use bilux_import::reading::Reading;
+use bilux_import::input::reading::Reading;
 use bilux_scene::Span;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};

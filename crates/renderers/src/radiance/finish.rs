@@ -3,9 +3,9 @@
 use super::sources;
 use super::world::World;
 use bilux_import::FormatError;
-use bilux_import::sharing::share_trees;
-use bilux_import::sink::Sink;
-use bilux_import::text::whole_file;
+use bilux_import::bytes::text::whole_file;
+use bilux_import::geometry::sharing::share_trees;
+use bilux_import::input::sink::Sink;
 use bilux_scene::SceneBuilder;
 use bilux_scene::cameras::CameraSpec;
 use std::sync::Arc;

@@ -3,8 +3,8 @@
 use super::kinds::Kind;
 use super::statement::{Primitive, Statement};
 use bilux_import::FormatError;
-use bilux_import::float::parse_f64;
-use bilux_import::oddities::Oddities;
+use bilux_import::bytes::float::parse_f64;
+use bilux_import::input::oddities::Oddities;
 use bilux_math::DVec3;
 use bilux_scene::Span;
 use std::rc::Rc;

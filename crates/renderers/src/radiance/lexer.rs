@@ -1,7 +1,7 @@
 //! Splits a file into words with their places. `#` begins a comment where a statement may begin, and before a number.
 
 use bilux_import::FormatError;
-use bilux_import::text::Places;
+use bilux_import::bytes::text::Places;
 use bilux_scene::Span;
 use std::sync::Arc;
 

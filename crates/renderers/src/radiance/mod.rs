@@ -29,7 +29,7 @@ mod views;
 mod world;
 mod xform;
 
-use bilux_import::formats::{ReadFormat, SceneFormatEntry};
+use bilux_import::tables::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, UpHint};
 

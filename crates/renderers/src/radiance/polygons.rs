@@ -1,9 +1,9 @@
 //! Polygons, as one mesh of each material.
 
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
-use bilux_import::oddities::Oddities;
-use bilux_import::polygon::Triangulator;
+use bilux_import::bytes::budget::Budget;
+use bilux_import::geometry::polygon::Triangulator;
+use bilux_import::input::oddities::Oddities;
 use bilux_math::{DVec3, Vec3};
 use bilux_scene::{Mesh, Object, Span, Spec, Visibility};
 use std::collections::HashMap;

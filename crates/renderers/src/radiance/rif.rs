@@ -1,7 +1,7 @@
 //! `.rif`: what the program `rad` reads: the files of a scene, and its views.
 
 use super::lexer::Lexer;
-use bilux_import::text::name_of;
+use bilux_import::bytes::text::name_of;
 use bilux_scene::Span;
 use std::sync::Arc;
 

@@ -1,9 +1,9 @@
 //! Spheres, cones and rings: each form is built once, and placed.
 
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
-use bilux_import::tessellation::grid;
-use bilux_import::tessellation::sphere::{AROUND, part_of_sphere};
+use bilux_import::bytes::budget::Budget;
+use bilux_import::geometry::tessellation::grid;
+use bilux_import::geometry::tessellation::sphere::{AROUND, part_of_sphere};
 use bilux_math::transcendental::sin_cos_f64;
 use bilux_math::{DMat4, DVec3};
 use bilux_scene::Mesh;

@@ -1,8 +1,8 @@
 //! Views, as `rpict` and the files of `rvu` have them. [Ward 1994]
 
 use super::world::{World, turned};
-use bilux_import::float::parse_f64;
-use bilux_import::placement::half_tangent;
+use bilux_import::bytes::float::parse_f64;
+use bilux_import::world::placement::half_tangent;
 use bilux_math::DVec3;
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{Span, Spec};

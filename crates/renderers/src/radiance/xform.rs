@@ -1,8 +1,8 @@
 //! `xform`: moves, turns, scales, mirrors and repeats what a file or the program before it says. [Ward 1994]
 
 use bilux_import::FormatError;
-use bilux_import::float::parse_f64;
-use bilux_import::placement::rotation;
+use bilux_import::bytes::float::parse_f64;
+use bilux_import::world::placement::rotation;
 use bilux_math::{DMat4, DVec3};
 use bilux_scene::Span;
 use std::rc::Rc;

@@ -6,7 +6,7 @@ use super::spline::{Polyline, Spline};
 use super::trimmed::{Composite, Trimmed};
 use crate::part21::{Table, Values};
 use crate::structure::axes::{axes, point, vector};
-use bilux_import::b_spline::{Basis, weighted};
+use bilux_import::geometry::b_spline::{Basis, weighted};
 use bilux_math::DVec3;
 
 /// Curves of curves end here.

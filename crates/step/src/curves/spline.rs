@@ -1,7 +1,7 @@
 //! B-spline curves, rational or not, and polylines.
 
 use super::curve::{Curve, least};
-use bilux_import::b_spline::{Basis, projected};
+use bilux_import::geometry::b_spline::{Basis, projected};
 use bilux_math::DVec3;
 use bilux_math::glam::DVec4;
 

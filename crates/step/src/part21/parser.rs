@@ -4,9 +4,9 @@ use super::lexer::{Lexer, Token};
 use super::table::{Instance, Record, Table, place};
 use super::value::{Piece, Value};
 use bilux_import::FormatError;
-use bilux_import::oddities::Oddities;
-use bilux_import::reading::Reading;
-use bilux_import::text::whole_file;
+use bilux_import::bytes::text::whole_file;
+use bilux_import::input::oddities::Oddities;
+use bilux_import::input::reading::Reading;
 use std::collections::HashMap;
 use std::sync::Arc;
 

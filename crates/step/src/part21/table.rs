@@ -1,7 +1,7 @@
 //! The instances of a file by their numbers.
 
 use super::value::{Piece, Value, Values};
-use bilux_import::oddities::Oddities;
+use bilux_import::input::oddities::Oddities;
 use bilux_scene::Span;
 use std::collections::HashMap;
 use std::sync::Arc;

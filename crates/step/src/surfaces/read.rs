@@ -7,7 +7,7 @@ use super::swept::{Extrusion, Offset, Revolution};
 use crate::curves::{curve, spline_form};
 use crate::part21::Table;
 use crate::structure::axes::{Axes, axes, point, vector};
-use bilux_import::b_spline::{Basis, weighted};
+use bilux_import::geometry::b_spline::{Basis, weighted};
 use bilux_math::DVec3;
 
 /// Surfaces of surfaces end here.

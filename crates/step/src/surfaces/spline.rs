@@ -1,7 +1,7 @@
 //! B-spline surfaces, rational or not.
 
 use super::surface::{Pole, Surface};
-use bilux_import::b_spline::{Basis, projected};
+use bilux_import::geometry::b_spline::{Basis, projected};
 use bilux_math::glam::DVec4;
 use bilux_math::{DVec2, DVec3};
 

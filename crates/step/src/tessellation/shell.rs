@@ -9,7 +9,7 @@ use crate::structure::axes::Axes;
 use crate::structure::styles::{Style, Styles};
 use crate::surfaces::{Scale, Surface, plane, surface};
 use bilux_import::FormatError;
-use bilux_import::reading::Reading;
+use bilux_import::input::reading::Reading;
 use bilux_math::DVec3;
 use bilux_math::parallel::map;
 use std::collections::{HashMap, HashSet};

@@ -1,8 +1,8 @@
 //! Layers in packages.
 
 use bilux_import::FormatError;
-use bilux_import::reading::Reading;
-use bilux_import::text::whole_file;
+use bilux_import::bytes::text::whole_file;
+use bilux_import::input::reading::Reading;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

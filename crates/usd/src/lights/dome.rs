@@ -3,7 +3,7 @@
 use super::Light;
 use crate::context::Context;
 use bilux_import::FormatError;
-use bilux_import::reading::Texels;
+use bilux_import::input::reading::Texels;
 use bilux_math::transcendental::{acos_f64, atan2_f64, sin_cos_f64};
 use bilux_math::{DVec3, Rgb};
 use bilux_scene::{Spec, Texture, Value};

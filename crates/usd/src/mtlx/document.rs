@@ -4,9 +4,9 @@ use super::nodes::Nodes;
 use crate::layer::{Layer, PRIM_BYTES, PrimSpec, Specifier};
 use crate::value::{Text, Value};
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
-use bilux_import::text::whole_file;
-use bilux_import::xml::Xml;
+use bilux_import::bytes::budget::Budget;
+use bilux_import::bytes::text::whole_file;
+use bilux_import::bytes::xml::Xml;
 use std::path::PathBuf;
 use std::sync::Arc;
 

@@ -5,8 +5,8 @@ use crate::layer::{Fields, Layer, PROPERTY_BYTES, Property};
 use crate::list_op::ListOp;
 use crate::value::{Text, Value};
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
-use bilux_import::xml::Xml;
+use bilux_import::bytes::budget::Budget;
+use bilux_import::bytes::xml::Xml;
 use roxmltree::Node;
 use std::collections::HashMap;
 

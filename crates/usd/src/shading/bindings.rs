@@ -3,7 +3,7 @@
 use crate::stage::Stage;
 use crate::value::{Text, Value};
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 
 /// The kinds of bindings that a picture uses, each before those that follow it: one for a preview is better than none.
 const PURPOSES: [&str; 3] = ["material:binding:full", "material:binding", "material:binding:preview"];

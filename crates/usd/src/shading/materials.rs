@@ -5,8 +5,8 @@ use super::network::{Input, kind, resolve};
 use super::{materialx, preview};
 use crate::stage::Stage;
 use bilux_import::FormatError;
-use bilux_import::reading::Reading;
-use bilux_import::sink::Sink;
+use bilux_import::input::reading::Reading;
+use bilux_import::input::sink::Sink;
 use bilux_scene::Spec;
 
 /// The outputs that can have a surface, the first one before the others.

@@ -4,7 +4,7 @@ use super::arnold;
 use crate::stage::{Found, Stage};
 use crate::value::Text;
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 
 /// What an input of a shader gets.
 #[derive(Clone, Debug)]

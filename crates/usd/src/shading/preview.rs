@@ -4,8 +4,8 @@ use super::draft::Draft;
 use super::network::Input;
 use super::textures::{Painted, Taken, bake, painted};
 use bilux_import::FormatError;
-use bilux_import::as_metal::as_metal;
-use bilux_import::displacement::{Along, Displacement};
+use bilux_import::appearance::as_metal::as_metal;
+use bilux_import::geometry::displacement::{Along, Displacement};
 use bilux_math::Rgb;
 use bilux_scene::texture::Image;
 use std::sync::Arc;
@@ -173,7 +173,7 @@ fn plain_scale(draft: &mut Draft, node: u32) -> Result<Option<Arc<Image>>, Forma
     let Some(file) = constant(stage, node, "file", budget)?.filter(|_| is_usual) else { return Ok(None) };
     let folder = stage.layers[file.layer as usize].folder.clone();
     let Some(name) = file.value.text() else { return Ok(None) };
-    let meaning = bilux_import::reading::Texels::Numbers(None);
+    let meaning = bilux_import::input::reading::Texels::Numbers(None);
     let found = draft.reading.texture(folder.as_deref(), name, meaning, &stage.at(node));
     Ok(found.ok().map(|texture| texture.image.clone()))
 }

@@ -7,7 +7,7 @@ use super::placing::placing;
 use crate::stage::Found;
 use crate::value::Value;
 use bilux_import::FormatError;
-use bilux_import::reading::Texels as Meaning;
+use bilux_import::input::reading::Texels as Meaning;
 use bilux_math::Rgb;
 use bilux_scene::Texture;
 use bilux_scene::texture::{Channel, Image, Texels, UvTransform, Wrap};

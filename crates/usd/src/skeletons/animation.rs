@@ -3,8 +3,9 @@
 use crate::stage::Stage;
 use crate::value::{Array, Text};
 use bilux_import::FormatError;
-use bilux_import::choice::named_or_numbered;
-use bilux_import::{budget::Budget, oddities::Oddities};
+use bilux_import::bytes::budget::Budget;
+use bilux_import::input::choice::named_or_numbered;
+use bilux_import::input::oddities::Oddities;
 use bilux_math::glam::DQuat;
 use bilux_math::{DMat4, DVec3};
 use bilux_scene::Animation;

@@ -4,8 +4,9 @@ use super::skeleton::Pose;
 use crate::stage::Stage;
 use crate::value::{Array, Text};
 use bilux_import::FormatError;
-use bilux_import::deformation::amounts;
-use bilux_import::{budget::Budget, oddities::Oddities};
+use bilux_import::bytes::budget::Budget;
+use bilux_import::geometry::deformation::amounts;
+use bilux_import::input::oddities::Oddities;
 use bilux_math::Vec3;
 
 /// The blend shapes of a prim that are used, and how much there is of each.

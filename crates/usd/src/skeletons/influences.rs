@@ -6,8 +6,9 @@ use crate::stage::Stage;
 use crate::transforms;
 use crate::value::{Array, Text, Value};
 use bilux_import::FormatError;
-use bilux_import::deformation::{Blends, DualBlends, DualJoint};
-use bilux_import::{budget::Budget, oddities::Oddities};
+use bilux_import::bytes::budget::Budget;
+use bilux_import::geometry::deformation::{Blends, DualBlends, DualJoint};
+use bilux_import::input::oddities::Oddities;
 use bilux_math::DMat4;
 use std::sync::Arc;
 

@@ -9,10 +9,10 @@ use crate::primvars::Place;
 use crate::stage::Stage;
 use crate::transforms;
 use bilux_import::FormatError;
-use bilux_import::deformation::{are_mirrored, move_points, turned};
-use bilux_import::normals::CornerNormals;
-use bilux_import::reading::Reading;
-use bilux_import::sink::Sink;
+use bilux_import::geometry::deformation::{are_mirrored, move_points, turned};
+use bilux_import::geometry::normals::CornerNormals;
+use bilux_import::input::reading::Reading;
+use bilux_import::input::sink::Sink;
 use bilux_math::{DMat4, Vec3};
 
 /// The skeleton and the blend shapes of a prim.

@@ -1,8 +1,8 @@
 //! Words, strings and numbers of a text.
 
 use bilux_import::FormatError;
-use bilux_import::float::parse_f64;
-use bilux_import::text::quoted;
+use bilux_import::bytes::float::parse_f64;
+use bilux_import::bytes::text::quoted;
 use bilux_scene::Span;
 use std::borrow::Cow;
 use std::sync::Arc;

@@ -6,7 +6,7 @@ use crate::layer::Fields;
 use crate::list_op::ListOp;
 use crate::value::{Reference, Text, TimeOffset, Value};
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 
 /// What a statement does to a weaker list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

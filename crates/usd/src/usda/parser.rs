@@ -7,7 +7,7 @@ use crate::layer::{Fields, Layer, MAX_DEPTH, PRIM_BYTES, PROPERTY_BYTES, PrimSpe
 use crate::list_op::ListOp;
 use crate::value::Text;
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 use std::path::PathBuf;
 use std::sync::Arc;
 

@@ -6,7 +6,7 @@ use crate::layer::MAX_DEPTH;
 use crate::list_op::ListOp;
 use crate::value::{Array, Numbers, Reference, Text, TimeOffset, Value};
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 use std::sync::Arc;
 
 /// Numbers whose memory is charged at a time.

@@ -2,7 +2,7 @@
 
 use super::bytes::Bytes;
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 
 /// LZ4 cannot shrink anything further than this.
 const MAX_PACKED: u64 = 256;

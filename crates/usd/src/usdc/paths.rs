@@ -5,7 +5,7 @@ use super::integers::integers;
 use crate::layer::MAX_DEPTH;
 use crate::value::Text;
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 
 /// A path as its parent and its last name.
 #[derive(Clone, Copy, Debug)]

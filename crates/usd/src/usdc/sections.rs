@@ -5,7 +5,7 @@ use super::integers::{integers, unpack};
 use super::paths::Paths;
 use crate::value::Text;
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 use std::borrow::Cow;
 use std::sync::Arc;
 

@@ -5,7 +5,7 @@ use super::sections::{Crate, END, Specs, open};
 use crate::layer::{Layer, PRIM_BYTES, PROPERTY_BYTES, PrimSpec, Property, Specifier};
 use crate::value::{Text, Value};
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 use std::borrow::Cow;
 use std::path::PathBuf;
 use std::sync::Arc;

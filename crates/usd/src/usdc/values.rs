@@ -7,7 +7,7 @@ use super::types::{Kind, Stored};
 use crate::list_op::ListOp;
 use crate::value::{Array, Numbers, Reference, Text, TimeOffset, Unpack, Value};
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 use half::f16;
 use std::sync::Arc;
 

@@ -3,11 +3,11 @@
 use super::document::Document;
 use super::placement::placed;
 use super::text::{Text, quoted};
-use bilux_import::camera_loss::{field_of_view, not_perspective, picture_aspect_ratio};
-use bilux_import::frame::metres;
-use bilux_import::placement::looking;
-use bilux_import::values::{number, vector};
-use bilux_import::writing::Writing;
+use bilux_import::output::values::{number, vector};
+use bilux_import::output::writing::Writing;
+use bilux_import::world::camera_loss::{field_of_view, not_perspective, picture_aspect_ratio};
+use bilux_import::world::frame::metres;
+use bilux_import::world::placement::looking;
 use bilux_math::Vec3;
 use bilux_math::transcendental::tan;
 use bilux_scene::cameras::CameraSpec;

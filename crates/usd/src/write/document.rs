@@ -2,7 +2,7 @@
 
 use super::names::Names;
 use super::text::Text;
-use bilux_import::frame::metres;
+use bilux_import::world::frame::metres;
 use bilux_scene::texture::Image;
 use bilux_scene::{Mesh, SceneBuilder};
 use std::collections::HashMap;

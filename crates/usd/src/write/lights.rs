@@ -4,10 +4,10 @@ use super::document::{Document, Look};
 use super::placement::placed;
 use super::text::{Text, asset, quoted, rgb};
 use bilux_import::FormatError;
-use bilux_import::dome::Dome;
-use bilux_import::placement::looking;
-use bilux_import::values::{colour, number, vector};
-use bilux_import::writing::Writing;
+use bilux_import::output::values::{colour, number, vector};
+use bilux_import::output::writing::Writing;
+use bilux_import::world::dome::Dome;
+use bilux_import::world::placement::looking;
 use bilux_math::{Mat4, Rgb, Vec3};
 use bilux_scene::{Mesh, Spec, Value};
 

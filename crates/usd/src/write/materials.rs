@@ -5,8 +5,8 @@ use super::draft::Draft;
 use super::text::{Text, quoted};
 use super::textures::{Input, Meaning};
 use bilux_import::FormatError;
-use bilux_import::values::{MaterialSupport, colour, nearest_principled, number, texture};
-use bilux_import::writing::Writing;
+use bilux_import::output::values::{MaterialSupport, colour, nearest_principled, number, texture};
+use bilux_import::output::writing::Writing;
 use bilux_math::Rgb;
 use bilux_scene::{Spec, Value};
 

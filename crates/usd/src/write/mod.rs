@@ -14,8 +14,8 @@ mod text;
 mod textures;
 
 use bilux_import::FormatError;
-use bilux_import::writing::Writing;
-use bilux_import::zipped::{Members, zipped};
+use bilux_import::bytes::zipped::{Members, zipped};
+use bilux_import::output::writing::Writing;
 use bilux_scene::{Mesh, SceneBuilder};
 use document::Document;
 use std::collections::HashMap;

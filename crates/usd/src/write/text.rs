@@ -1,6 +1,6 @@
 //! Prims and their attributes as text.
 
-use bilux_import::float::push_f32;
+use bilux_import::bytes::float::push_f32;
 use bilux_math::Rgb;
 use std::fmt::Write as _;
 use std::io::Write as _;

@@ -4,9 +4,9 @@ use crate::dae::data::{Input, Table, input, names};
 use crate::dae::document::Document;
 use crate::dae::element::Element;
 use bilux_import::FormatError;
-use bilux_import::between_keys::{bezier, slerp};
-use bilux_import::budget::Budget;
-use bilux_import::oddities::Oddities;
+use bilux_import::bytes::budget::Budget;
+use bilux_import::input::oddities::Oddities;
+use bilux_import::world::between_keys::{bezier, slerp};
 use bilux_math::glam::DQuat;
 use bilux_math::{DMat4, DVec3};
 

@@ -8,7 +8,7 @@ use super::geometry::{self, Mesh};
 use super::graph::{Graph, Placed};
 use super::posed::Posed;
 use bilux_import::FormatError;
-use bilux_import::polygon_mesh::Workshop;
+use bilux_import::meshes::polygon_mesh::Workshop;
 
 /// A mesh after what deforms it.
 pub(super) struct Shaped<'d> {

@@ -6,7 +6,7 @@ use crate::dae::element::Element;
 use crate::dae::geometry;
 use crate::dae::posed::Posed;
 use bilux_import::FormatError;
-use bilux_import::polygon_mesh::{Layer, PolygonMesh, Workshop};
+use bilux_import::meshes::polygon_mesh::{Layer, PolygonMesh, Workshop};
 use bilux_math::{Rgb, Vec3};
 
 /// Adds the shapes of a morph to a mesh. Normalized, the mesh has the weight that the shapes leave; relative, the shapes are

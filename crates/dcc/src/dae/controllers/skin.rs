@@ -5,7 +5,7 @@ use crate::dae::element::Element;
 use crate::dae::graph::{Graph, Placed};
 use crate::dae::posed::Posed;
 use bilux_import::FormatError;
-use bilux_import::polygon_mesh::{PolygonMesh, Workshop};
+use bilux_import::meshes::polygon_mesh::{PolygonMesh, Workshop};
 use bilux_math::DMat4;
 use std::collections::HashMap;
 

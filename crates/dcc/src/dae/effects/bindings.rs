@@ -3,7 +3,7 @@
 use crate::dae::document::Document;
 use crate::dae::element::Element;
 use crate::dae::geometry::Symbol;
-use bilux_import::oddities::Oddities;
+use bilux_import::input::oddities::Oddities;
 use roxmltree::NodeId;
 use std::hash::{Hash, Hasher};
 

@@ -2,7 +2,7 @@
 
 use crate::dae::document::Document;
 use crate::dae::element::Element;
-use bilux_import::oddities::Oddities;
+use bilux_import::input::oddities::Oddities;
 
 /// How light is reflected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,10 +8,10 @@ mod transparency;
 
 use super::posed::Posed;
 use bilux_import::FormatError;
-use bilux_import::fitting::fitted;
-use bilux_import::principled_draft::PrincipledDraft;
-use bilux_import::reading::{Reading, default_material};
-use bilux_import::sink::Sink;
+use bilux_import::appearance::fitting::fitted;
+use bilux_import::appearance::principled_draft::PrincipledDraft;
+use bilux_import::input::reading::{Reading, default_material};
+use bilux_import::input::sink::Sink;
 use bilux_scene::Spec;
 pub(super) use bindings::{Bindings, Worn};
 use effect::Effect;

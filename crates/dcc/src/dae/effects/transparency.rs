@@ -4,7 +4,7 @@
 use super::common::Filling;
 use crate::dae::element::Element;
 use bilux_import::FormatError;
-use bilux_import::phong::{has_alpha, opacity};
+use bilux_import::appearance::phong::{has_alpha, opacity};
 use bilux_scene::Texture;
 use bilux_scene::texture::{Channel, Image, Texels};
 use std::sync::Arc;

@@ -5,7 +5,7 @@ use crate::dae::data::{Input, input};
 use crate::dae::document::Document;
 use crate::dae::element::Element;
 use bilux_import::FormatError;
-use bilux_import::polygon_mesh::{Layer, Mapping, PolygonMesh, Polygons, Workshop, reflectances};
+use bilux_import::meshes::polygon_mesh::{Layer, Mapping, PolygonMesh, Polygons, Workshop, reflectances};
 use bilux_math::{Rgb, Vec2, Vec3};
 
 /// What nodes bind a material to.

@@ -4,8 +4,8 @@ use crate::dae::data::Table;
 use crate::dae::document::Document;
 use crate::dae::element::Element;
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
-use bilux_import::polygon_mesh::{Layer, Mapping};
+use bilux_import::bytes::budget::Budget;
+use bilux_import::meshes::polygon_mesh::{Layer, Mapping};
 use roxmltree::NodeId;
 use std::collections::HashMap;
 

@@ -57,7 +57,7 @@ pub(super) fn bridged(outline: &[Vec3], holes: &[Vec<Vec3>]) -> Option<Vec<usize
 
 /// Twice the area of a polygon times its normal.
 fn newell(points: &[Vec3]) -> DVec3 {
-    bilux_import::normals::newell(points.iter().copied())
+    bilux_import::geometry::normals::newell(points.iter().copied())
 }
 
 /// A point as seen along a normal, so that the outline is counter-clockwise.
@@ -109,7 +109,7 @@ mod tests {
             let polygon: Vec<Vec3> = around.iter().map(|&corner| all[corner]).collect();
             assert_eq!(newell(&polygon), DVec3::new(0.0, 0.0, 2.0 * (100.0 - 4.0 - 9.0)));
             let mut triangles = Vec::new();
-            bilux_import::polygon::Triangulator::default()
+            bilux_import::geometry::polygon::Triangulator::default()
                 .triangulate(polygon.iter().copied(), |t| triangles.push(t))
                 .unwrap();
             let cover: f64 =

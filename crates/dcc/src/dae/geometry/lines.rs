@@ -7,7 +7,7 @@ use super::primitives::LINES;
 use crate::dae::document::Document;
 use crate::dae::element::Element;
 use bilux_import::FormatError;
-use bilux_import::polygon_mesh::Workshop;
+use bilux_import::meshes::polygon_mesh::Workshop;
 use bilux_math::Vec3;
 use bilux_scene::Mesh;
 

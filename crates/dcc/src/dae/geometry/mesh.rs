@@ -6,7 +6,7 @@ use crate::dae::data::{Input, inputs};
 use crate::dae::document::Document;
 use crate::dae::element::Element;
 use bilux_import::FormatError;
-use bilux_import::polygon_mesh::{PolygonMesh, Workshop};
+use bilux_import::meshes::polygon_mesh::{PolygonMesh, Workshop};
 
 /// Polygons, and the names by which nodes give them materials.
 pub(in crate::dae) struct Mesh<'d> {

@@ -4,7 +4,7 @@ use super::builder::Builder;
 use super::holes::bridged;
 use crate::dae::element::Element;
 use bilux_import::FormatError;
-use bilux_import::polygon_mesh::Workshop;
+use bilux_import::meshes::polygon_mesh::Workshop;
 
 /// A list of polygons with what its vertices refer to.
 pub(super) struct Primitive<'d> {

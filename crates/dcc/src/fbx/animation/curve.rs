@@ -4,8 +4,8 @@ use super::key::{Interpolation, Key, Rule, Tangent};
 use super::tangents;
 use crate::fbx::tree::{Node, Value};
 use bilux_import::FormatError;
-use bilux_import::between_keys::{THIRD, bezier, parameter};
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
+use bilux_import::world::between_keys::{THIRD, bezier, parameter};
 
 /// Bits of a key's flags.
 const CONSTANT: i64 = 0x2;

@@ -9,9 +9,9 @@ mod tangents;
 
 use super::document::{Animated, Document, Index};
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
-use bilux_import::choice::named_or_numbered;
-use bilux_import::oddities::Oddities;
+use bilux_import::bytes::budget::Budget;
+use bilux_import::input::choice::named_or_numbered;
+use bilux_import::input::oddities::Oddities;
 use bilux_scene::Animation;
 use clip::Clip;
 use std::collections::HashMap;

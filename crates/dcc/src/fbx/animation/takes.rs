@@ -6,8 +6,8 @@ use super::key::{Interpolation, Key, Rule, Tangent};
 use crate::fbx::document::{Animated, Document, Index, Properties, display_name};
 use crate::fbx::tree::{Node, Value};
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
-use bilux_import::oddities::Oddities;
+use bilux_import::bytes::budget::Budget;
+use bilux_import::input::oddities::Oddities;
 use bilux_math::DVec3;
 use std::collections::HashMap;
 

@@ -4,7 +4,7 @@
 //! Maya and MotionBuilder (`ufbxi_solve_auto_tangent`).
 
 use super::key::{Interpolation, Key, Rule, Tangent};
-use bilux_import::between_keys::THIRD;
+use bilux_import::world::between_keys::THIRD;
 use bilux_math::DVec2;
 
 /// Values that differ by less are the same to a clamped key.

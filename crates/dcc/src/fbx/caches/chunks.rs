@@ -4,7 +4,7 @@
 use super::around::Around;
 use super::file::{CacheFile, Counts};
 use bilux_import::FormatError;
-use bilux_import::reading::Reading;
+use bilux_import::input::reading::Reading;
 use bilux_math::Vec3;
 
 /// Longer names of channels are not looked at.

@@ -1,8 +1,8 @@
 //! What the XML file of a Maya cache says of it.
 
 use bilux_import::FormatError;
-use bilux_import::reading::Reading;
-use bilux_import::xml::Xml;
+use bilux_import::bytes::xml::Xml;
+use bilux_import::input::reading::Reading;
 use bilux_scene::Span;
 use std::path::Path;
 use std::sync::Arc;

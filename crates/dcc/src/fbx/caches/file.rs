@@ -1,7 +1,7 @@
 //! A file of a cache.
 
 use bilux_import::FormatError;
-use bilux_import::reading::Reading;
+use bilux_import::input::reading::Reading;
 use bilux_math::Vec3;
 use bilux_scene::Span;
 use std::io::Read;

@@ -5,7 +5,7 @@ use super::chunks;
 use super::description::{Channel, Description};
 use super::file::{CacheFile, Counts};
 use bilux_import::FormatError;
-use bilux_import::reading::Reading;
+use bilux_import::input::reading::Reading;
 use bilux_math::Vec3;
 use bilux_scene::Span;
 use std::path::Path;

@@ -12,8 +12,8 @@ use super::document::{Index, display_name};
 use super::posed::Posed;
 use super::tree::Node;
 use bilux_import::FormatError;
-use bilux_import::oddities::Oddities;
-use bilux_import::reading::Reading;
+use bilux_import::input::oddities::Oddities;
+use bilux_import::input::reading::Reading;
 use bilux_math::Vec3;
 use file::{CacheFile, Counts};
 

@@ -4,7 +4,7 @@
 use super::around::Around;
 use super::file::CacheFile;
 use bilux_import::FormatError;
-use bilux_import::reading::Reading;
+use bilux_import::input::reading::Reading;
 use bilux_math::Vec3;
 
 pub(super) const SIGNATURE: &[u8; 12] = b"POINTCACHE2\0";

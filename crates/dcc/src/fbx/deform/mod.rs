@@ -8,9 +8,9 @@ use super::document::{Document, Index, display_name};
 use super::graph::{Graph, Placed};
 use super::posed::Posed;
 use bilux_import::FormatError;
-use bilux_import::oddities::Oddities;
-use bilux_import::polygon_mesh::{Layer, Mapping, PolygonMesh, Workshop};
-use bilux_import::reading::Reading;
+use bilux_import::input::oddities::Oddities;
+use bilux_import::input::reading::Reading;
+use bilux_import::meshes::polygon_mesh::{Layer, Mapping, PolygonMesh, Workshop};
 
 /// The deformers of a mesh.
 pub(super) struct Deformers<'d> {

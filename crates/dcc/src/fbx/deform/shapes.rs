@@ -2,8 +2,8 @@
 
 use crate::fbx::document::Index;
 use bilux_import::FormatError;
-use bilux_import::deformation::amounts;
-use bilux_import::polygon_mesh::{PolygonMesh, Workshop};
+use bilux_import::geometry::deformation::amounts;
+use bilux_import::meshes::polygon_mesh::{PolygonMesh, Workshop};
 
 use crate::fbx::posed::Posed;
 use crate::fbx::tree::{Node, Value};

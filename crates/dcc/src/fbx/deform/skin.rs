@@ -2,9 +2,9 @@
 
 use crate::fbx::document::Index;
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
-use bilux_import::deformation::{Blends, DualBlends, DualJoint};
-use bilux_import::polygon_mesh::{PolygonMesh, Workshop};
+use bilux_import::bytes::budget::Budget;
+use bilux_import::geometry::deformation::{Blends, DualBlends, DualJoint};
+use bilux_import::meshes::polygon_mesh::{PolygonMesh, Workshop};
 
 use crate::fbx::graph::{Graph, Placed};
 use crate::fbx::posed::Posed;

@@ -3,7 +3,7 @@
 use super::keys::{Index, Key};
 use crate::fbx::tree::{Node, Value};
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 use std::collections::HashMap;
 
 /// A connection from an object to another one, or to a property of it.

@@ -14,9 +14,9 @@ pub(super) use settings::Settings;
 
 use super::tree::{Node, Tree, Value};
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
-use bilux_import::oddities::Oddities;
-use bilux_import::reading::Source;
+use bilux_import::bytes::budget::Budget;
+use bilux_import::input::oddities::Oddities;
+use bilux_import::input::reading::Source;
 use connections::Connections;
 use keys::Key;
 use properties::Template;

@@ -2,7 +2,7 @@
 
 use crate::fbx::tree::{Node, Value, Values};
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 use bilux_math::DVec3;
 use std::collections::HashMap;
 

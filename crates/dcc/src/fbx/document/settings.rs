@@ -2,7 +2,7 @@
 
 use super::properties::Properties;
 use crate::fbx::tree::{Node, Value};
-use bilux_import::authors::program;
+use bilux_import::input::authors::program;
 use bilux_math::{DMat3, DMat4, DVec3};
 
 /// Ticks of time per second up to version 7.

@@ -2,8 +2,8 @@
 
 use crate::fbx::tree::{Node, Number, Value};
 use bilux_import::FormatError;
-use bilux_import::polygon_mesh::{Layer, Mapping, Workshop};
-use bilux_import::text::quoted;
+use bilux_import::bytes::text::quoted;
+use bilux_import::meshes::polygon_mesh::{Layer, Mapping, Workshop};
 
 /// What the elements of a layer belong to.
 fn mapping_of(layer: Node) -> Option<Mapping> {

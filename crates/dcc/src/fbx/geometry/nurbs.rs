@@ -2,8 +2,8 @@
 
 use crate::fbx::tree::{Node, Value};
 use bilux_import::FormatError;
-use bilux_import::b_spline::{Basis, Weights};
-use bilux_import::polygon_mesh::{Layer, Mapping, PolygonMesh, Polygons, Workshop};
+use bilux_import::geometry::b_spline::{Basis, Weights};
+use bilux_import::meshes::polygon_mesh::{Layer, Mapping, PolygonMesh, Polygons, Workshop};
 use bilux_math::{DVec3, Vec2, Vec3};
 
 /// Polygons along a piece between two knots; fewer if there would be more than [`MOST`] in all.

@@ -4,7 +4,7 @@ use super::layers::Surface;
 use super::{layers, nurbs, polygons};
 use crate::fbx::tree::Node;
 use bilux_import::FormatError;
-use bilux_import::polygon_mesh::{Layer, PolygonMesh, Workshop, reflectances};
+use bilux_import::meshes::polygon_mesh::{Layer, PolygonMesh, Workshop, reflectances};
 use bilux_math::{Rgb, Vec2, Vec3};
 
 /// The mesh at a node of the file, or its NURBS surface as polygons; `None` if it has neither. `has_second_uvs` tells whether a second set of texture

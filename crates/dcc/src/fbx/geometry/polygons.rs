@@ -2,7 +2,7 @@
 
 use crate::fbx::tree::Node;
 use bilux_import::FormatError;
-use bilux_import::polygon_mesh::{Polygons, Workshop};
+use bilux_import::meshes::polygon_mesh::{Polygons, Workshop};
 
 pub(super) fn read(node: Node, positions: usize, workshop: &mut Workshop) -> Result<Polygons, FormatError> {
     let indices: Vec<i32> = node.numbers(workshop.budget)?;

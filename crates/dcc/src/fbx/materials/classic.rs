@@ -3,7 +3,7 @@
 use super::draft::Draft;
 use crate::fbx::document::Properties;
 use bilux_import::FormatError;
-use bilux_import::phong;
+use bilux_import::appearance::phong;
 use bilux_math::Rgb;
 use bilux_scene::texture::Channel;
 

@@ -5,7 +5,7 @@ use super::worn::Worn;
 use crate::fbx::document::Index;
 use crate::fbx::posed::Posed;
 use bilux_import::FormatError;
-use bilux_import::principled_draft::PrincipledDraft;
+use bilux_import::appearance::principled_draft::PrincipledDraft;
 use bilux_math::Rgb;
 use bilux_math::colour::srgb_decode;
 use bilux_scene::texture::Channel;

@@ -2,7 +2,7 @@
 
 use super::records::{Builder, MAX_DEPTH};
 use bilux_import::FormatError;
-use bilux_import::text::{Places, quoted};
+use bilux_import::bytes::text::{Places, quoted};
 
 /// The first bytes of every binary file.
 pub(in crate::fbx) const MAGIC: &[u8] = b"Kaydara FBX Binary";

@@ -4,8 +4,8 @@ use super::arrays::Number;
 use super::records::{Encoding, Record};
 use super::values::{Value, Values};
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
-use bilux_import::text::{Places, quoted};
+use bilux_import::bytes::budget::Budget;
+use bilux_import::bytes::text::{Places, quoted};
 use bilux_scene::Span;
 
 /// All nodes of a file.

@@ -4,9 +4,9 @@ use super::node::Tree;
 use super::records::{Builder, Encoding};
 use super::{binary, text};
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
-use bilux_import::reading::Source;
-use bilux_import::text::Places;
+use bilux_import::bytes::budget::Budget;
+use bilux_import::bytes::text::Places;
+use bilux_import::input::reading::Source;
 
 impl<'a> Tree<'a> {
     /// The nodes of a file.

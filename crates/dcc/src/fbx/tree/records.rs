@@ -1,7 +1,7 @@
 //! Nodes as a list, which both encodings fill.
 
 use bilux_import::FormatError;
-use bilux_import::budget::Budget;
+use bilux_import::bytes::budget::Budget;
 
 /// Deeper nodes are refused; real files have about ten levels.
 pub(super) const MAX_DEPTH: usize = 64;

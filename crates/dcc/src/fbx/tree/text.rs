@@ -3,7 +3,7 @@
 use super::node::Tree;
 use super::records::{Builder, MAX_DEPTH};
 use bilux_import::FormatError;
-use bilux_import::text::Places;
+use bilux_import::bytes::text::Places;
 
 /// What every text has near its beginning.
 const FIRST_NODE: &[u8] = b"FBXHeaderExtension";

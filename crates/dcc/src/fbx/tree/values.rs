@@ -2,7 +2,7 @@
 
 use super::arrays::{Elements, PackedArray};
 use super::records::Encoding;
-use bilux_import::float::parse_f64;
+use bilux_import::bytes::float::parse_f64;
 
 /// A value of a node.
 #[derive(Clone, Copy, Debug)]

@@ -4,7 +4,7 @@ use super::project::{ObjectSettings, PartSettings, Project, Volume};
 use crate::threemf::package::Package;
 use crate::threemf::xml::{Element, Level, Xml};
 use bilux_import::FormatError;
-use bilux_import::reading::Reading;
+use bilux_import::input::reading::Reading;
 
 /// The names of parts that are not printed, and what they are called.
 const UNPRINTED: &[(&str, &str)] = &[

@@ -4,7 +4,7 @@ use super::project::Project;
 use crate::threemf::colour::Colour;
 use crate::threemf::package::Package;
 use bilux_import::FormatError;
-use bilux_import::reading::Reading;
+use bilux_import::input::reading::Reading;
 use serde_json::Value;
 
 /// The memory that JSON takes, as a multiple of its text.

@@ -10,7 +10,7 @@ pub(super) use project::{ObjectSettings, Project};
 
 use super::package::Package;
 use bilux_import::FormatError;
-use bilux_import::reading::Reading;
+use bilux_import::input::reading::Reading;
 
 /// The project in a package; an empty one if no slicer wrote it.
 pub(super) fn project(package: &Package, reading: &mut Reading) -> Result<Project, FormatError> {

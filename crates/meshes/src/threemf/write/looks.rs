@@ -3,10 +3,10 @@
 use super::meshes::Welded;
 use super::model::{Look, Model, Properties};
 use bilux_import::FormatError;
-use bilux_import::colours::encoded;
-use bilux_import::values::{MaterialSupport, colour, nearest_principled, number, texture};
-use bilux_import::writing::Writing;
-use bilux_import::xml::escaped;
+use bilux_import::bytes::xml::escaped;
+use bilux_import::geometry::colours::encoded;
+use bilux_import::output::values::{MaterialSupport, colour, nearest_principled, number, texture};
+use bilux_import::output::writing::Writing;
 use bilux_math::{Rgb, Vec2};
 use bilux_scene::texture::{Filter, Wrap};
 use bilux_scene::{Mesh, Spec, Texture};
@@ -53,7 +53,7 @@ impl Model<'_> {
     }
 
     fn picture(&mut self, texture: &Texture, writing: &mut Writing) -> Result<usize, FormatError> {
-        let capped = texture.texels().any(bilux_import::images::is_bright);
+        let capped = texture.texels().any(bilux_import::input::images::is_bright);
         if capped {
             writing.warn("texels brighter than white are written as white");
         }

@@ -5,10 +5,10 @@ mod meshes;
 mod model;
 
 use bilux_import::FormatError;
-use bilux_import::bake::warn_of_scene;
-use bilux_import::writing::Writing;
-use bilux_import::xml::escaped;
-use bilux_import::zipped::{Members, zipped};
+use bilux_import::bytes::xml::escaped;
+use bilux_import::bytes::zipped::{Members, zipped};
+use bilux_import::output::bake::warn_of_scene;
+use bilux_import::output::writing::Writing;
 use bilux_scene::{Object, SceneBuilder, Visibility};
 use model::Model;
 

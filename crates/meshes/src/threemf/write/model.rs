@@ -2,9 +2,9 @@
 
 use super::meshes::Welded;
 use bilux_import::FormatError;
-use bilux_import::bake::name_of;
-use bilux_import::writing::Writing;
-use bilux_import::xml::escaped;
+use bilux_import::bytes::xml::escaped;
+use bilux_import::output::bake::name_of;
+use bilux_import::output::writing::Writing;
 use bilux_math::Rgb;
 use bilux_scene::{Mesh, Object, SceneBuilder, Texture};
 use std::collections::HashMap;

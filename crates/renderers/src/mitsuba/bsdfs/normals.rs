@@ -3,8 +3,8 @@
 use crate::mitsuba::maker::{Maker, Meaning};
 use crate::mitsuba::plugin::Plugin;
 use bilux_import::FormatError;
-use bilux_import::heights::normals_of_stretched_heights;
-use bilux_import::texture_or_value::TextureOrValue;
+use bilux_import::appearance::heights::normals_of_stretched_heights;
+use bilux_import::appearance::texture_or_value::TextureOrValue;
 use bilux_math::{Rgb, Vec2};
 use bilux_scene::{Spec, Texture};
 use std::sync::Arc;

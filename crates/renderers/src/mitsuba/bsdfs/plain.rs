@@ -4,9 +4,9 @@ use super::measured_indices;
 use crate::mitsuba::maker::{Maker, Meaning};
 use crate::mitsuba::plugin::{Plugin, Value};
 use bilux_import::FormatError;
-use bilux_import::names::unknown;
-use bilux_import::roughness::{Keys, PLAIN, set_alphas};
-use bilux_import::texture_or_value::TextureOrValue;
+use bilux_import::appearance::roughness::{Keys, PLAIN, set_alphas};
+use bilux_import::appearance::texture_or_value::TextureOrValue;
+use bilux_import::input::names::unknown;
 use bilux_math::Rgb;
 use bilux_scene::Spec;
 
@@ -249,6 +249,6 @@ fn glossy(maker: &mut Maker, plugin: &Plugin, alphas: [f32; 2]) -> Result<Spec, 
     maker.set(&mut spec, "base_color", base, &plugin.at);
     // 4% at normal incidence is a weight of 1.
     spec.parameters.set("specular_weight", (shine.luminance() / 0.04).min(1.0));
-    set_alphas(&mut spec, bilux_import::roughness::PRINCIPLED, alphas, &plugin.at);
+    set_alphas(&mut spec, bilux_import::appearance::roughness::PRINCIPLED, alphas, &plugin.at);
     Ok(spec)
 }

@@ -3,7 +3,7 @@
 //! Mitsuba counts facets that light meets once, and takes what meets several as lost; so the base below is darker than one that
 //! loses nothing, by a third at an alpha of 0.3. Ours loses nothing: its colour makes up for that. [Jakob 2022]
 
-use bilux_import::fresnel::fresnel;
+use bilux_import::appearance::fresnel::fresnel;
 use bilux_math::Vec3;
 use bilux_math::transcendental::{ln, sin_cos};
 use std::f32::consts::PI;

@@ -3,7 +3,7 @@
 use crate::mitsuba::maker::{MAX_LIGHT, Maker, Meaning};
 use crate::mitsuba::plugin::Plugin;
 use bilux_import::FormatError;
-use bilux_import::texture_or_value::TextureOrValue;
+use bilux_import::appearance::texture_or_value::TextureOrValue;
 use bilux_math::Rgb;
 use bilux_scene::{MATERIALS, Spec, Texture};
 use std::rc::Rc;

@@ -4,7 +4,7 @@ use super::maker::{Piece, ShapeMaker};
 use crate::mitsuba::plugin::Plugin;
 use crate::mitsuba::values::numbers;
 use bilux_import::FormatError;
-use bilux_import::tessellation::tubes::{of_bspline, spine, tube_of_widths};
+use bilux_import::geometry::tessellation::tubes::{of_bspline, spine, tube_of_widths};
 use bilux_math::DMat4;
 use bilux_math::glam::DVec3;
 use bilux_scene::Mesh;

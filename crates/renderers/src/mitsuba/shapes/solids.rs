@@ -3,8 +3,8 @@
 use super::maker::{Piece, ShapeMaker};
 use crate::mitsuba::plugin::Plugin;
 use bilux_import::FormatError;
-use bilux_import::tessellation::grid;
-use bilux_import::tessellation::sphere::{AROUND, part_of_sphere};
+use bilux_import::geometry::tessellation::grid;
+use bilux_import::geometry::tessellation::sphere::{AROUND, part_of_sphere};
 use bilux_math::transcendental::sin_cos_f64;
 use bilux_math::{DMat4, DVec3, Vec2, Vec3};
 use bilux_scene::Mesh;

@@ -3,9 +3,9 @@
 use super::document::Document;
 use crate::mitsuba::bsdfs::rough_base_factor;
 use bilux_import::FormatError;
-use bilux_import::fresnel::extinction_of;
-use bilux_import::values::{colour, number, texture};
-use bilux_import::writing::Writing;
+use bilux_import::appearance::fresnel::extinction_of;
+use bilux_import::output::values::{colour, number, texture};
+use bilux_import::output::writing::Writing;
 use bilux_math::Rgb;
 use bilux_scene::materials::metal_indices;
 use bilux_scene::{Spec, Texture, Value};

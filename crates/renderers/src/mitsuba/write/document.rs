@@ -1,7 +1,7 @@
 //! A scene file under construction, and the words that it is made of.
 
-use bilux_import::writing::UnusedNames;
-use bilux_import::xml::escaped;
+use bilux_import::bytes::xml::escaped;
+use bilux_import::output::writing::UnusedNames;
 use bilux_math::{Mat4, Rgb, Vec3};
 use bilux_scene::{Mesh, SceneBuilder};
 use std::collections::HashMap;

@@ -2,9 +2,9 @@
 
 use super::document::{Document, numbers};
 use bilux_import::FormatError;
-use bilux_import::dome::Dome;
-use bilux_import::values::{colour, number, vector};
-use bilux_import::writing::Writing;
+use bilux_import::output::values::{colour, number, vector};
+use bilux_import::output::writing::Writing;
+use bilux_import::world::dome::Dome;
 use bilux_math::{Mat4, Rgb, Vec3};
 use bilux_scene::{Spec, Value};
 use std::f32::consts::PI;

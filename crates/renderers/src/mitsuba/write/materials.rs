@@ -2,8 +2,8 @@
 
 use super::document::{Document, Emission, Look};
 use bilux_import::FormatError;
-use bilux_import::values::{MaterialSupport, colour, nearest_principled, number, texture};
-use bilux_import::writing::Writing;
+use bilux_import::output::values::{MaterialSupport, colour, nearest_principled, number, texture};
+use bilux_import::output::writing::Writing;
 use bilux_math::Rgb;
 use bilux_scene::materials::with_indices;
 use bilux_scene::{Spec, Texture, Value};

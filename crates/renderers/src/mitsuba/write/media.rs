@@ -1,8 +1,8 @@
 //! Writes what fills shapes.
 
 use super::document::{Document, Inside};
-use bilux_import::values::{colour, number};
-use bilux_import::writing::Writing;
+use bilux_import::output::values::{colour, number};
+use bilux_import::output::writing::Writing;
 use bilux_math::transcendental::ln;
 use bilux_math::{DMat4, DVec3, Rgb};
 use bilux_scene::media::Grid;

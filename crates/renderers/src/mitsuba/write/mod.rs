@@ -10,7 +10,7 @@ mod shapes;
 mod textures;
 
 use bilux_import::FormatError;
-use bilux_import::writing::Writing;
+use bilux_import::output::writing::Writing;
 use bilux_scene::{Mesh, SceneBuilder};
 use document::Document;
 use std::collections::HashMap;

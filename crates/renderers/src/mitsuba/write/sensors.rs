@@ -1,9 +1,9 @@
 //! Writes sensors with film and sampler, and the integrator.
 
 use super::document::{Document, numbers};
-use bilux_import::camera_loss::{field_of_view_in, not_perspective};
-use bilux_import::values::{number, vector};
-use bilux_import::writing::Writing;
+use bilux_import::output::values::{number, vector};
+use bilux_import::output::writing::Writing;
+use bilux_import::world::camera_loss::{field_of_view_in, not_perspective};
 use bilux_math::Vec3;
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{Spec, Value};

@@ -3,9 +3,9 @@
 use super::document::{Document, Emission, Look};
 use super::emitters::APART;
 use bilux_import::FormatError;
-use bilux_import::ply::encode;
-use bilux_import::text::whole_file;
-use bilux_import::writing::Writing;
+use bilux_import::bytes::text::whole_file;
+use bilux_import::output::ply::encode;
+use bilux_import::output::writing::Writing;
 use bilux_math::{DMat4, Mat4, Transform};
 use bilux_scene::{Mesh, Object, Visibility};
 use std::sync::Arc;

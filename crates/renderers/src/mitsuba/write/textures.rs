@@ -2,8 +2,8 @@
 
 use super::document::{Document, numbers};
 use bilux_import::FormatError;
-use bilux_import::values::{colour, texture};
-use bilux_import::writing::Writing;
+use bilux_import::output::values::{colour, texture};
+use bilux_import::output::writing::Writing;
 use bilux_math::Rgb;
 use bilux_scene::texture::{Filter, Wrap};
 use bilux_scene::{Spec, Texture};

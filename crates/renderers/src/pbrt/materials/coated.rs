@@ -7,9 +7,9 @@ use super::maker::MaterialMaker;
 use super::plain::{CONDUCTOR, INTERFACE, Metal};
 use super::roughness::{Keys, OWN, PLAIN, PRINCIPLED};
 use bilux_import::FormatError;
-use bilux_import::fresnel::{extinction_of, reflected_inside};
-use bilux_import::spectra::metals::straight_and_grazing;
-use bilux_import::texture_or_value::TextureOrValue;
+use bilux_import::appearance::fresnel::{extinction_of, reflected_inside};
+use bilux_import::appearance::spectra::metals::straight_and_grazing;
+use bilux_import::appearance::texture_or_value::TextureOrValue;
 use bilux_math::Rgb;
 use bilux_scene::Spec;
 

@@ -6,7 +6,7 @@ use crate::pbrt::parameters::{Kind, ParameterList};
 use crate::pbrt::spectra::{Named, named};
 use crate::pbrt::textures::Textures;
 use bilux_import::FormatError;
-use bilux_import::texture_or_value::TextureOrValue;
+use bilux_import::appearance::texture_or_value::TextureOrValue;
 use bilux_math::Rgb;
 use bilux_scene::materials::{self, MaterialInputs};
 use bilux_scene::{Span, Spec, Value};

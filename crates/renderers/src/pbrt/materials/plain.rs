@@ -6,9 +6,9 @@ use super::super::spectra::{Named, named};
 use super::maker::MaterialMaker;
 use super::roughness::{Names, OWN, PLAIN};
 use bilux_import::FormatError;
-use bilux_import::fresnel::extinction_of;
-use bilux_import::spectra::metals::{self, Reduced};
-use bilux_import::texture_or_value::TextureOrValue;
+use bilux_import::appearance::fresnel::extinction_of;
+use bilux_import::appearance::spectra::metals::{self, Reduced};
+use bilux_import::appearance::texture_or_value::TextureOrValue;
 use bilux_math::Rgb;
 use bilux_scene::Spec;
 

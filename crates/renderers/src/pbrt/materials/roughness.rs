@@ -4,9 +4,9 @@
 use super::super::parameters::ParameterList;
 use super::maker::MaterialMaker;
 use bilux_import::FormatError;
-use bilux_import::roughness::set_alphas;
-pub(super) use bilux_import::roughness::{Keys, PLAIN, PRINCIPLED};
-use bilux_import::texture_or_value::TextureOrValue;
+use bilux_import::appearance::roughness::set_alphas;
+pub(super) use bilux_import::appearance::roughness::{Keys, PLAIN, PRINCIPLED};
+use bilux_import::appearance::texture_or_value::TextureOrValue;
 use bilux_math::Rgb;
 use bilux_math::transcendental::ln;
 use bilux_scene::Spec;

@@ -6,7 +6,7 @@ use super::maker::MaterialMaker;
 use super::plain::Metal;
 use super::roughness::{OWN, PLAIN, PRINCIPLED};
 use bilux_import::FormatError;
-use bilux_import::texture_or_value::TextureOrValue;
+use bilux_import::appearance::texture_or_value::TextureOrValue;
 use bilux_math::Rgb;
 use bilux_scene::Spec;
 

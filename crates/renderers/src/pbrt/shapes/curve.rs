@@ -4,8 +4,8 @@ use super::super::document::ShapeGeometry;
 use super::super::parameters::ParameterList;
 use super::maker::{ShapeMaker, needed_points};
 use bilux_import::FormatError;
-use bilux_import::names::unknown;
-use bilux_import::tessellation::tubes::{of_bspline, raised, spine, strip, tube};
+use bilux_import::geometry::tessellation::tubes::{of_bspline, raised, spine, strip, tube};
+use bilux_import::input::names::unknown;
 use bilux_math::glam::DVec3;
 
 /// Subdivisions along and around a segment if there are few curves.

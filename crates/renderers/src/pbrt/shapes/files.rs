@@ -4,7 +4,7 @@ use super::super::document::ShapeGeometry;
 use super::super::parameters::ParameterList;
 use super::maker::ShapeMaker;
 use bilux_import::FormatError;
-use bilux_import::reading::Source;
+use bilux_import::input::reading::Source;
 use bilux_scene::{Mesh, SceneError};
 use std::path::Path;
 use std::sync::Arc;

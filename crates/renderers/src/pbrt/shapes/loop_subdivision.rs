@@ -4,7 +4,7 @@ use super::super::document::ShapeGeometry;
 use super::super::parameters::ParameterList;
 use super::maker::{ShapeMaker, corners, needed_points};
 use bilux_import::FormatError;
-use bilux_import::subdivision::{Cage, Scheme};
+use bilux_import::geometry::subdivision::{Cage, Scheme};
 
 /// More levels would be finer than any image.
 const MAX_LEVELS: i32 = 8;

@@ -17,7 +17,7 @@ use super::loader::Loader;
 use super::parameters::ParameterList;
 use super::state::State;
 use bilux_import::FormatError;
-use bilux_import::names::unknown;
+use bilux_import::input::names::unknown;
 use maker::ShapeMaker;
 
 /// Builds a shape; `None` if it is invisible.

@@ -1,6 +1,6 @@
 //! A scene file under construction, and the words that it is made of.
 
-use bilux_import::writing::UnusedNames;
+use bilux_import::output::writing::UnusedNames;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::SceneBuilder;
 use std::collections::HashMap;

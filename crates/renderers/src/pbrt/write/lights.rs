@@ -2,9 +2,9 @@
 
 use super::document::{Document, float, from_to, numbers, point, rgb};
 use bilux_import::FormatError;
-use bilux_import::environment_maps::on_the_sphere;
-use bilux_import::values::{colour, number, texture, vector};
-use bilux_import::writing::Writing;
+use bilux_import::appearance::environment_maps::on_the_sphere;
+use bilux_import::output::values::{colour, number, texture, vector};
+use bilux_import::output::writing::Writing;
 use bilux_math::{Rgb, Vec3};
 use bilux_pictures::{Picture, write_bytes};
 use bilux_scene::lights::{BuiltLight, build};

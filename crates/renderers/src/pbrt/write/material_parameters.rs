@@ -1,6 +1,6 @@
 //! The parameters of Bilux materials that pbrt's materials can express.
 
-use bilux_import::values::MaterialSupport;
+use bilux_import::output::values::MaterialSupport;
 
 pub(super) const HOLDS: MaterialSupport = MaterialSupport {
     format: "pbrt",

@@ -10,7 +10,7 @@ mod textures;
 mod view;
 
 use bilux_import::FormatError;
-use bilux_import::writing::Writing;
+use bilux_import::output::writing::Writing;
 use bilux_scene::{Mesh, SceneBuilder};
 use document::Document;
 use objects::Objects;

@@ -2,7 +2,7 @@
 
 use super::document::Document;
 use bilux_import::FormatError;
-use bilux_import::writing::Writing;
+use bilux_import::output::writing::Writing;
 use bilux_math::{Rgb, Vec2};
 use bilux_pictures::{Alpha, ColourSpace, Picture, write_bytes};
 use bilux_scene::Texture;

@@ -1,9 +1,9 @@
 //! Writes the directives before `WorldBegin`: film, camera, filter, samples and depth.
 
 use super::document::{Document, float, numbers};
-use bilux_import::camera_loss::{field_of_view_in, not_perspective};
-use bilux_import::values::{number, vector};
-use bilux_import::writing::Writing;
+use bilux_import::output::values::{number, vector};
+use bilux_import::output::writing::Writing;
+use bilux_import::world::camera_loss::{field_of_view_in, not_perspective};
 use bilux_math::Vec3;
 use bilux_math::transcendental::{atan, tan};
 use bilux_scene::cameras::CameraSpec;

@@ -7,7 +7,7 @@ use crate::radiance::sky_model::{Form, Sky};
 use crate::radiance::statement::Statement;
 use crate::radiance::units::EFFICACY;
 use bilux_import::FormatError;
-use bilux_import::oddities::Oddities;
+use bilux_import::input::oddities::Oddities;
 use bilux_math::transcendental::cos_f64;
 use bilux_scene::Span;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};

@@ -9,7 +9,7 @@ use super::kinds::{Finish, Kind};
 use super::sky_model::Sky;
 use super::statement::{Primitive, Statement};
 use bilux_import::FormatError;
-use bilux_import::float::parse_f64;
+use bilux_import::bytes::float::parse_f64;
 use bilux_scene::Span;
 pub(super) use gendaylit::generate as gendaylit;
 pub(super) use gensky::generate as gensky;

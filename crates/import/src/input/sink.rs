@@ -1,0 +1,30 @@
+//! What a reader writes: a scene, and what is odd about the file.
+
+use crate::input::oddities::Oddities;
+use bilux_scene::SceneBuilder;
+
+/// The scene so far, and the oddities so far.
+#[derive(Default)]
+pub struct Sink {
+    pub scene: SceneBuilder,
+    pub oddities: Oddities,
+}
+
+impl Sink {
+    /// For files that say nothing of what surrounds their objects, nor of how bright the picture is.
+    pub fn for_bare_files() -> Sink {
+        let scene = SceneBuilder {
+            environment_unspecified: true,
+            exposure_unspecified: true,
+            ..SceneBuilder::default()
+        };
+        Sink { scene, oddities: Oddities::default() }
+    }
+
+    /// The scene with a warning or a note for each oddity.
+    pub fn finish(self) -> SceneBuilder {
+        let Sink { mut scene, oddities } = self;
+        oddities.into_warnings(&mut scene);
+        scene
+    }
+}
