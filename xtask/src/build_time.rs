@@ -43,7 +43,7 @@ const EDITS: &[Edit] = &[
     },
     Edit {
         place: "the command line",
-        file: "crates/cli/src/version.rs",
+        file: "crates/cli/src/arguments/version.rs",
         before: "CPU level {}, sandbox {})",
         after: "level of the CPU {}, sandbox {})",
     },

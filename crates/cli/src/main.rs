@@ -4,42 +4,16 @@
 // A binary exports nothing, so `pub` here means visible to sibling modules.
 #![allow(unreachable_pub)]
 
-mod advice;
-mod allocator;
 mod arguments;
-mod assignments;
-mod choices;
 mod commands;
-mod comparison;
-mod converting;
-mod denoisers;
-mod denoising;
-mod ending;
-mod explaining;
-mod farming;
-mod help;
-mod interrupt;
-mod lasting;
-mod measuring;
-mod memory;
-mod output;
 mod preview;
-mod progress;
+mod process;
 mod sandbox;
-mod sandbox_paths;
-mod sensing;
-mod serving;
-mod settings_from;
-mod signals;
-mod streams;
-mod studio;
-mod usage;
-mod values;
-mod version;
-mod working;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
+use commands::advice;
+use process::{allocator, memory, output, usage};
 use std::io::Write;
 use std::process::ExitCode;
 

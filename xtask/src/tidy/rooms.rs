@@ -1,16 +1,16 @@
-//! In some crates each part is a folder: no file stands beside `lib.rs`, so that the folders are the parts. Put a new file into the
+//! In some crates each part is a folder: no file stands beside `lib.rs` or `main.rs`, so that the folders are the parts. Put a new file into the
 //! folder of what it is part of.
 
 use super::repository::Repository;
 use super::violation::Violation;
 
 /// The crates that are divided so.
-const CRATES: &[&str] = &["crates/transport", "crates/import"];
+const CRATES: &[&str] = &["crates/transport", "crates/import", "crates/cli"];
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let is_loose = |path: &str| {
         let file = CRATES.iter().find_map(|folder| path.strip_prefix(folder)?.strip_prefix("/src/"));
-        file.is_some_and(|file| !file.contains('/') && file != "lib.rs")
+        file.is_some_and(|file| !file.contains('/') && !["lib.rs", "main.rs", "build.rs"].contains(&file))
     };
     let loose = repository.rust().filter(|(file, _)| is_loose(&file.path));
     loose.map(|(file, _)| Violation::new(&file.path, 0, "stands beside the folders of its crate")).collect()

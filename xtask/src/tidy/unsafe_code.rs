@@ -8,7 +8,7 @@ use super::violation::Violation;
 const ALLOWED: &[(&str, &str)] = &[
     ("crates/accel/src/brute_simd/kernel.rs", "the wide loop over triangles"),
     (
-        "crates/cli/src/allocator.rs",
+        "crates/cli/src/process/allocator.rs",
         "the allocator: what it is set to, and what happens when it has nothing left",
     ),
     ("crates/bench/src/rays/embree", "a rival's library, loaded at run time"),

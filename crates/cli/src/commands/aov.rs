@@ -2,11 +2,11 @@
 
 use super::lengths;
 use super::targets::is_stdout;
+use crate::arguments::assignments::from_flag;
 use crate::arguments::{Common, Render};
-use crate::assignments::from_flag;
-use crate::interrupt::Interrupt;
-use crate::progress::Report;
-use crate::{output, usage};
+use crate::commands::progress::Report;
+use crate::process::interrupt::Interrupt;
+use crate::process::{output, usage};
 use anyhow::{Context, bail};
 use bilux::pictures::WriteOptions;
 use bilux::pictures::formats::format_of_path;

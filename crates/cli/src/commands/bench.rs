@@ -1,9 +1,11 @@
 //! `bilux bench`: benchmarks.
 
 use super::{DONE, check_folder, read_options};
+use crate::arguments::measuring::{
+    BenchKind, LoadBench, ModelsBench, RaysBench, RenderBench, Repeated, SpeedBench,
+};
 use crate::arguments::{Bench, Common};
-use crate::measuring::{BenchKind, LoadBench, ModelsBench, RaysBench, RenderBench, Repeated, SpeedBench};
-use crate::{output, usage};
+use crate::process::{output, usage};
 use anyhow::{Context, anyhow};
 use bilux::settings::{parse_size, size_error};
 use bilux_bench::Options;

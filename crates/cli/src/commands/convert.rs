@@ -8,10 +8,10 @@ use super::{
     DONE, check_choices, check_folder, check_not_input, is_picture, outputs, read_options_with,
     report_warnings, warn_lost_alpha,
 };
+use crate::arguments::streams::named;
 use crate::arguments::{Common, Convert};
-use crate::sandbox_paths::SandboxPaths;
-use crate::streams::named;
-use crate::usage;
+use crate::commands::sandbox_paths::SandboxPaths;
+use crate::process::usage;
 use anyhow::{anyhow, bail};
 use bilux::formats::check_not_read;
 use bilux::pictures::formats::WriteOptions;

@@ -2,10 +2,10 @@
 
 use super::pictures::{read_picture, with_main};
 use super::{DONE, check_folder, check_not_input, check_quality, warn_lost_alpha};
+use crate::arguments::values::Exposure;
 use crate::arguments::{Common, Denoise};
-use crate::sandbox_paths::SandboxPaths;
-use crate::values::Exposure;
-use crate::{output, usage};
+use crate::commands::sandbox_paths::SandboxPaths;
+use crate::process::{output, usage};
 use anyhow::Context;
 use bilux::pictures::denoise::{DenoiserChoice, Task, denoise, denoiser};
 use bilux::pictures::formats::format_of_path;
@@ -24,7 +24,7 @@ pub fn run(arguments: &Denoise, common: &Common) -> anyhow::Result<u8> {
     let tone_map = tone_map(&arguments.tonemap).context("--tonemap").map_err(usage::wrong)?;
     let threads = arguments.threads as usize;
     if arguments.by != "builtin" {
-        crate::denoisers::load(threads, common);
+        crate::commands::denoisers::load(threads, common);
     }
     let task = Task { threads, sandboxed: common.sandbox, ..Task::default() };
     let chosen = denoiser(&arguments.by, &task).context("--by").map_err(usage::wrong)?;

@@ -2,9 +2,10 @@
 
 use super::given::Given;
 use super::{DONE, check_choices, read_options_with, report_warnings};
+use crate::arguments::settings_from;
 use crate::arguments::{Common, Explain};
-use crate::sandbox_paths::SandboxPaths;
-use crate::{output, settings_from, usage};
+use crate::commands::sandbox_paths::SandboxPaths;
+use crate::process::{output, usage};
 use bilux::explain::{Explanation, Measures, slower};
 use bilux::{Job, JobRequest};
 use serde_json::{Value, json};

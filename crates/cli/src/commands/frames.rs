@@ -2,11 +2,11 @@
 
 use super::input::Input;
 use super::targets::{Target, frame_path, is_stdout};
-use crate::choices::{GlassArgument, defined};
-use crate::ending;
-use crate::lasting::Checkpoints;
-use crate::output;
-use crate::studio::StudioArguments;
+use crate::arguments::choices::{GlassArgument, defined};
+use crate::arguments::lasting::Checkpoints;
+use crate::arguments::studio::StudioArguments;
+use crate::process::ending;
+use crate::process::output;
 use anyhow::{Context, bail};
 use bilux::checkpoint::{CheckpointError, Identity, checkpoint_path};
 use bilux::encoding::ContentHash;

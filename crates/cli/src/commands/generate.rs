@@ -1,10 +1,10 @@
 //! `bilux generate`: the built-in procedural scenes.
 
 use super::{DONE, check_folder, check_not_input, is_picture, load, read_options, report_warnings};
+use crate::arguments::assignments::{assignment_of, from_flag};
 use crate::arguments::{Common, Generate};
-use crate::assignments::{assignment_of, from_flag};
-use crate::sandbox_paths::SandboxPaths;
-use crate::usage;
+use crate::commands::sandbox_paths::SandboxPaths;
+use crate::process::usage;
 use anyhow::anyhow;
 use bilux::formats::WriteOptions;
 use bilux::math::Vec3;

@@ -4,8 +4,8 @@ use super::load;
 use super::pictures::{holds_picture, read_picture, report};
 use super::targets::is_stdout;
 use crate::arguments::Common;
-use crate::assignments::from_flag;
-use crate::usage;
+use crate::arguments::assignments::from_flag;
+use crate::process::usage;
 use anyhow::{Context, bail};
 use bilux::formats::ReadOptions;
 use bilux::pictures::{

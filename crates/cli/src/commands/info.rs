@@ -3,9 +3,9 @@
 use super::given::Given;
 use super::{DONE, check_choices, read_options_with, report_notes, report_warnings};
 use crate::arguments::{Common, Info};
-use crate::output::counted;
-use crate::sandbox_paths::SandboxPaths;
-use crate::{output, usage};
+use crate::commands::sandbox_paths::SandboxPaths;
+use crate::process::output::counted;
+use crate::process::{output, usage};
 use bilux::formats::ReadOptions;
 use bilux::memory::Memory;
 use bilux::scene::media::{BLOCK_VOXELS, Grid};

@@ -1,9 +1,9 @@
 //! `--lengths`: the light of a picture in intervals of the optical length of paths.
 
 use crate::arguments::Common;
-use crate::interrupt::Interrupt;
-use crate::output;
-use crate::progress::Report;
+use crate::commands::progress::Report;
+use crate::process::interrupt::Interrupt;
+use crate::process::output;
 use bilux::math::Rgb;
 use bilux::pictures::{Picture, WriteOptions};
 use bilux::transport::LengthBins;

@@ -2,7 +2,7 @@
 
 use super::DONE;
 use crate::arguments::List;
-use crate::{output, usage};
+use crate::process::{output, usage};
 use anyhow::anyhow;
 use bilux::math::registry::{Entry, Parameter, ParameterKind};
 use bilux::tables::{Detail, TABLES, values};

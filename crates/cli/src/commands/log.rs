@@ -1,6 +1,6 @@
 //! What is reported about a picture once it is written: a line of text, or a line of JSON.
 
-use crate::output;
+use crate::process::output;
 use bilux::budget::DEFAULT_BUDGET;
 use bilux::pictures::denoise::DenoiserChoice;
 use bilux::scene::OrientationSource;

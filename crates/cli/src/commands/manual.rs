@@ -2,7 +2,7 @@
 
 use super::DONE;
 use crate::arguments::Arguments;
-use crate::output;
+use crate::process::output;
 use anyhow::Context;
 use clap::CommandFactory;
 use std::path::Path;

@@ -2,8 +2,8 @@
 
 use super::{DONE, check_folder, check_not_input, warn_lost_alpha};
 use crate::arguments::{Common, Merge};
-use crate::sandbox_paths::SandboxPaths;
-use crate::{output, usage};
+use crate::commands::sandbox_paths::SandboxPaths;
+use crate::process::{output, usage};
 use anyhow::{Context, bail};
 use bilux::Display;
 use bilux::merging::Merging;

@@ -1,5 +1,10 @@
 //! One command per file. Each returns the exit status.
 
+pub(crate) mod advice;
+pub(crate) mod denoisers;
+pub(crate) mod progress;
+pub(crate) mod sandbox_paths;
+
 mod aov;
 pub mod bench;
 pub mod compare;
@@ -35,9 +40,9 @@ pub mod worker;
 mod written;
 
 use crate::arguments::Common;
-use crate::choices::{Choices, GlassArgument};
-use crate::output;
-use crate::sandbox_paths::folder_of;
+use crate::arguments::choices::{Choices, GlassArgument};
+use crate::commands::sandbox_paths::folder_of;
+use crate::process::output;
 use anyhow::bail;
 use bilux::formats::{Glass, ReadOptions};
 use bilux::math::Rgb;

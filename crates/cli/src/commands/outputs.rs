@@ -1,8 +1,8 @@
 //! Where pictures go: files, or standard output, in any format.
 
 use super::{check_folder, check_quality};
-use crate::output;
-use crate::streams::{PNG, is_stdout, named};
+use crate::arguments::streams::{PNG, is_stdout, named};
+use crate::process::output;
 use anyhow::bail;
 use bilux::pictures::formats::{WriteOptions, format_of_path};
 use bilux::pictures::{Picture, Source, format_named};
@@ -22,7 +22,7 @@ pub fn check(output: &Path, format: Option<&str>, quality: Option<u8>) -> anyhow
         if format_named(name).is_none_or(|row| row.write.is_none()) {
             let rows = bilux::pictures::PICTURE_FORMATS.iter().filter(|row| row.write.is_some());
             let names = rows.map(|row| row.entry.name);
-            let at = crate::assignments::from_flag("--output-format");
+            let at = crate::arguments::assignments::from_flag("--output-format");
             return Err(SceneError::unknown("picture format", name, names, &at).into());
         }
     }

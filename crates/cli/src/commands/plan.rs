@@ -1,9 +1,9 @@
 //! `bilux convert --heat-map`: one channel of a picture, in false colours or as a table of numbers; and what a plan adds up to.
 
 use super::contours::drawn;
-use crate::assignments::from_flag;
-use crate::converting::Convert;
-use crate::{output, usage};
+use crate::arguments::assignments::from_flag;
+use crate::arguments::converting::Convert;
+use crate::process::{output, usage};
 use anyhow::anyhow;
 use bilux::math::photometry::LUMENS_PER_WATT;
 use bilux::metadata::{IRRADIANCE, MEASURES};

@@ -3,8 +3,8 @@
 use super::input::Input;
 use super::targets::is_stdout;
 use super::{DONE, aov};
-use crate::progress::Report;
-use crate::{output, usage};
+use crate::commands::progress::Report;
+use crate::process::{output, usage};
 use anyhow::Context;
 use bilux::Job;
 use bilux::light_path::LightPath;

@@ -2,11 +2,11 @@
 
 use super::pictures::{read_picture, with_main};
 use super::{DONE, check_folder, check_not_input, check_quality, warn_lost_alpha};
+use crate::arguments::values::Exposure;
 use crate::arguments::{Common, Sensor};
-use crate::output::{counted, eprint};
-use crate::sandbox_paths::SandboxPaths;
-use crate::usage;
-use crate::values::Exposure;
+use crate::commands::sandbox_paths::SandboxPaths;
+use crate::process::output::{counted, eprint};
+use crate::process::usage;
 use anyhow::Context;
 use bilux::pictures::formats::{BitDepth, format_of_path};
 use bilux::pictures::{ColourSpace, Limits, Picture, WriteOptions, auto_exposure, tone_map};

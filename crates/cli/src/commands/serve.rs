@@ -2,12 +2,14 @@
 
 use super::{DONE, check_choices, load, read_options_with, report_notes, report_warnings};
 use crate::arguments::Common;
-use crate::choices::{Choices, GlassArgument, defined};
-use crate::interrupt::interrupt;
-use crate::sandbox_paths::{SandboxPaths, folder_of};
-use crate::serving::Serve;
-use crate::studio::{StudioArguments, surround};
-use crate::{denoisers, output, settings_from, usage};
+use crate::arguments::choices::{Choices, GlassArgument, defined};
+use crate::arguments::serving::Serve;
+use crate::arguments::settings_from;
+use crate::arguments::studio::{StudioArguments, surround};
+use crate::commands::denoisers;
+use crate::commands::sandbox_paths::{SandboxPaths, folder_of};
+use crate::process::interrupt::interrupt;
+use crate::process::{output, usage};
 use anyhow::bail;
 use bilux::formats::ReadOptions;
 use bilux::scene::SceneBuilder;

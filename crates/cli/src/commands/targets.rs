@@ -2,7 +2,7 @@
 
 use super::{check_folder, outputs};
 use crate::arguments::Render;
-pub use crate::streams::is_stdout;
+pub use crate::arguments::streams::is_stdout;
 use anyhow::bail;
 use bilux::pictures::formats::format_of_path;
 use bilux::scene::error::nearest_name;

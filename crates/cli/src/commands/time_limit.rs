@@ -1,6 +1,6 @@
 //! Whether a picture was done within its time limit, and where the time went if it was not.
 
-use crate::output;
+use crate::process::output;
 use bilux::{Job, Outcome};
 use std::time::Duration;
 

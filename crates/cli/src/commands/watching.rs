@@ -3,8 +3,8 @@
 use super::DONE;
 use super::targets::{Target, is_stdout};
 use crate::arguments::{Common, Render};
-use crate::interrupt::Interrupt;
-use crate::{output, usage};
+use crate::process::interrupt::Interrupt;
+use crate::process::{output, usage};
 use anyhow::bail;
 use bilux::watch::{Changes, Watched};
 use std::collections::BTreeSet;

@@ -3,7 +3,7 @@
 use super::aov::{self, Layers};
 use super::input::Input;
 use super::{outputs, warn_lost_alpha};
-use crate::interrupt::Interrupt;
+use crate::process::interrupt::Interrupt;
 use anyhow::bail;
 use bilux::pictures::Picture;
 use bilux::pictures::denoise::DenoiserChoice;

@@ -6,8 +6,8 @@ mod kitty;
 mod protocol;
 mod sixel;
 
-use crate::interrupt::Interrupt;
-use crate::output;
+use crate::process::interrupt::Interrupt;
+use crate::process::output;
 use bilux::checkpoint::CheckpointWriter;
 use bilux::math::Rgb;
 use bilux::pictures::{Picture, WriteOptions};

@@ -65,7 +65,7 @@ impl Scene {
         self.has_clear_media() && !self.has_panes()
     }
 
-    /// True when light passes some surfaces straight: [`Material::is_pane`].
+    /// True when light passes some surfaces straight: [`is_pane`](crate::materials::Material::is_pane).
     #[inline]
     pub fn has_panes(&self) -> bool {
         self.parts.has_panes

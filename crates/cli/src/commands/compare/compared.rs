@@ -2,7 +2,7 @@
 
 use crate::arguments::{Common, Compare};
 use crate::commands::pictures::{read_picture, with_main};
-use crate::output;
+use crate::process::output;
 use bilux::pictures::metrics::{HeatMap, Pair, Report, heat_map};
 use bilux::pictures::{Limits, Picture, TONEMAPS};
 use serde_json::Value;

@@ -4,7 +4,7 @@ use super::compared::{BEYOND, Compared, TROUBLE, as_json, broken_bounds};
 use super::page;
 use crate::arguments::{Common, Compare};
 use crate::commands::{DONE, is_picture};
-use crate::output;
+use crate::process::output;
 use anyhow::{Context, bail};
 use bilux::pictures::Report;
 use serde_json::{Value, json};

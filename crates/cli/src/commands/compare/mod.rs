@@ -6,8 +6,8 @@ mod page;
 
 use super::{DONE, check_folder, check_not_input};
 use crate::arguments::{Common, Compare};
-use crate::output;
-use crate::sandbox_paths::SandboxPaths;
+use crate::commands::sandbox_paths::SandboxPaths;
+use crate::process::output;
 use anyhow::bail;
 use bilux::pictures::metrics::METRICS;
 use compared::{BEYOND, Compared, TROUBLE, as_json, broken_bounds};

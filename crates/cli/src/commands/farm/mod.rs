@@ -10,10 +10,11 @@ mod split;
 mod template;
 
 use super::{DONE, check_choices, load, read_options_with, report_warnings};
+use crate::arguments::farming::Farm;
+use crate::arguments::settings_from;
 use crate::arguments::{Common, Render};
-use crate::farming::Farm;
-use crate::sandbox_paths::SandboxPaths;
-use crate::{output, settings_from, usage};
+use crate::commands::sandbox_paths::SandboxPaths;
+use crate::process::{output, usage};
 use anyhow::{Context, bail};
 use bilux::Settings;
 use bilux::budget::with_default_budget;

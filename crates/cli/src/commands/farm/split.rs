@@ -1,6 +1,6 @@
 //! Cuts a picture or an animation into ranges of samples or of frames.
 
-use crate::farming::Farm;
+use crate::arguments::farming::Farm;
 use anyhow::bail;
 use bilux::Settings;
 

@@ -2,12 +2,12 @@
 
 use super::confines::Confines;
 use super::lines::{LONGEST, Line};
+use crate::arguments::values::{parse_bytes, parse_duration};
 use crate::arguments::{Arguments, Command, Common, Worker};
+use crate::commands::denoisers::may_denoise;
 use crate::commands::render::confines;
 use crate::commands::targets::targets;
-use crate::denoisers::may_denoise;
-use crate::output;
-use crate::values::{parse_bytes, parse_duration};
+use crate::process::output;
 use bilux::scene::error::nearest_name;
 use clap::{CommandFactory, Parser};
 use serde_json::{Map, Value};

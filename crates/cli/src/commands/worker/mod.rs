@@ -13,7 +13,7 @@ mod warm;
 
 use super::DONE;
 use crate::arguments::{Common, Worker};
-use crate::output;
+use crate::process::output;
 use job::{Job, Limits};
 use lines::Lines;
 use process::{Ending, Process};

@@ -3,7 +3,7 @@
 use super::confines::Confines;
 use super::job::Job;
 use super::signals::Signals;
-use crate::signals;
+use crate::process::signals;
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Write};
 use std::path::PathBuf;

@@ -1,6 +1,6 @@
 //! Ctrl-C, SIGTERM and the end of the terminal for the process that reads the jobs: it goes on until the job under way has its result.
 
-use crate::signals;
+use crate::process::signals;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 

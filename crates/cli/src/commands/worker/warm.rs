@@ -2,8 +2,9 @@
 //! own, and answers each with what `--json` prints and a last line, `{"done": STATUS, "error": …}`.
 
 use crate::arguments::{Arguments, Command};
-use crate::interrupt::interrupt;
-use crate::{commands, memory, output, usage};
+use crate::commands;
+use crate::process::interrupt::interrupt;
+use crate::process::{memory, output, usage};
 use anyhow::bail;
 use clap::Parser;
 use serde_json::json;

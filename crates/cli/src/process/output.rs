@@ -123,7 +123,7 @@ fn suggested_flag(cause: &(dyn std::error::Error + 'static)) -> Option<String> {
             | bilux::Error::Format(FormatError::TooLarge { .. })
             | bilux::Error::Render(RenderError::Threads { .. })
     );
-    if let (true, Some(source)) = (is_too_large, crate::memory::tighter()) {
+    if let (true, Some(source)) = (is_too_large, crate::process::memory::tighter()) {
         return Some(format!(" ({source} is the limit)"));
     }
     if let Some(bytes) = error.memory_to_allow() {
@@ -139,7 +139,7 @@ fn suggested_flag(cause: &(dyn std::error::Error + 'static)) -> Option<String> {
 
 /// The flag that allows so many bytes for a picture, whose limit may be a part of that of all.
 fn allowing([needed, limit]: [u64; 2]) -> Option<String> {
-    let parts = crate::memory::allowed().checked_div(limit)?.max(1);
+    let parts = crate::process::memory::allowed().checked_div(limit)?.max(1);
     let bytes = needed.checked_mul(parts).filter(|bytes| *bytes < 1 << 44)?;
     Some(match bytes {
         0..0x4000_0000 => format!(" (--max-memory {}M)", bytes.div_ceil(1 << 20)),

@@ -5,8 +5,8 @@
 //! A thread waits for signals, so that none of the work has to look for them: not reading, building trees or decoding,
 //! nor a library in the midst of any of it.
 
-use crate::ending::end;
-use crate::interrupt::{Interrupt, TIMED_OUT, interrupt, status};
+use crate::process::ending::end;
+use crate::process::interrupt::{Interrupt, TIMED_OUT, interrupt, status};
 #[cfg(target_os = "linux")]
 use signal_hook::consts::SIGHUP;
 use signal_hook::consts::{SIGINT, SIGTERM};

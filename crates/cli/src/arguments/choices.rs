@@ -1,7 +1,7 @@
 //! The options for the choices that a scene file leaves open.
 
-use crate::help;
-use crate::values::{parse_definition, parse_radius, parse_scheme, parse_time};
+use crate::arguments::help;
+use crate::arguments::values::{parse_definition, parse_radius, parse_scheme, parse_time};
 use bilux::formats::Scheme;
 use clap::{Args, ValueEnum};
 

@@ -1,8 +1,8 @@
 //! The options of `bilux sensor`. Those of the sensor come from its row of parameters.
 
-use crate::assignments::{from_flag, value_of};
-use crate::help;
-use crate::values::{Exposure, parse_exposure, parse_quality};
+use crate::arguments::assignments::{from_flag, value_of};
+use crate::arguments::help;
+use crate::arguments::values::{Exposure, parse_exposure, parse_quality};
 use bilux::math::registry::ParameterKind;
 use bilux::pictures::sensor::SENSOR;
 use bilux::scene::Parameters;

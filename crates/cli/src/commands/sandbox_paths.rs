@@ -2,9 +2,9 @@
 //! files with a message that names them; the kernel, where it can, refuses them whatever a faulty decoder may try.
 
 use crate::arguments::Common;
+use crate::arguments::studio::StudioArguments;
+use crate::process::{memory, output, signals};
 use crate::sandbox::{Enforcement, restrict};
-use crate::studio::StudioArguments;
-use crate::{memory, output, signals};
 use anyhow::bail;
 use bilux::formats::archive_of;
 use std::path::{Path, PathBuf};

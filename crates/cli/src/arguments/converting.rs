@@ -1,8 +1,8 @@
 //! The options of `bilux convert`.
 
-use crate::choices::Posed;
-use crate::help;
-use crate::values::{parse_maintenance, parse_positive, parse_quality};
+use crate::arguments::choices::Posed;
+use crate::arguments::help;
+use crate::arguments::values::{parse_maintenance, parse_positive, parse_quality};
 use clap::Args;
 use std::path::PathBuf;
 

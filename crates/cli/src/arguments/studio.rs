@@ -1,8 +1,9 @@
 //! The options for the studio around a model.
 
-use crate::assignments::{change_of, from_flag};
-use crate::values::{parse_focal, parse_metres, parse_zoom};
-use crate::{help, usage};
+use crate::arguments::assignments::{change_of, from_flag};
+use crate::arguments::help;
+use crate::arguments::values::{parse_focal, parse_metres, parse_zoom};
+use crate::process::usage;
 use anyhow::{Context, bail};
 use bilux::formats::ReadOptions;
 use bilux::scene::{SceneBuilder, SceneError};

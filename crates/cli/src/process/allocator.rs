@@ -8,8 +8,8 @@
 //! the process ends here instead, with a message.
 #![allow(unsafe_code)] // An allocator that passes everything on, calls of a C function that takes two numbers, and a signal handler.
 
-use crate::ending;
-use crate::memory;
+use crate::process::ending;
+use crate::process::memory;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::io::Write;
 use std::sync::atomic::{AtomicUsize, Ordering};

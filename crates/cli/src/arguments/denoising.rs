@@ -1,7 +1,7 @@
 //! The options of `bilux denoise`.
 
-use crate::help;
-use crate::values::{Exposure, parse_count, parse_exposure, parse_quality};
+use crate::arguments::help;
+use crate::arguments::values::{Exposure, parse_count, parse_exposure, parse_quality};
 use clap::Args;
 use std::path::PathBuf;
 

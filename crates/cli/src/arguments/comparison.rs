@@ -1,7 +1,7 @@
 //! The options of `bilux compare`.
 
-use crate::help;
-use crate::values::parse_bound;
+use crate::arguments::help;
+use crate::arguments::values::parse_bound;
 use clap::Args;
 use std::path::PathBuf;
 

@@ -1,11 +1,11 @@
 //! Turns flags and `--set KEY=VALUE` into the same parameters that scene files use.
 
+use crate::arguments::assignments::{assignment_of, from_flag};
+use crate::arguments::serving::Serve;
+use crate::arguments::studio::StudioArguments;
+use crate::arguments::values::Exposure;
 use crate::arguments::{Explain, Render};
-use crate::assignments::{assignment_of, from_flag};
-use crate::memory;
-use crate::serving::Serve;
-use crate::studio::StudioArguments;
-use crate::values::Exposure;
+use crate::process::memory;
 use bilux::scene::{Parameters, Value};
 
 /// The render settings on the command line.

@@ -8,7 +8,7 @@ struct UsageError(anyhow::Error);
 
 impl fmt::Display for UsageError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&crate::output::message(&self.0))
+        f.write_str(&crate::process::output::message(&self.0))
     }
 }
 
@@ -27,7 +27,7 @@ pub fn wrong(error: impl Into<anyhow::Error>) -> anyhow::Error {
 
 /// Adds the scene's name to an error, unless it already has it or is about the command line.
 pub fn naming(scene: &Path, error: anyhow::Error) -> anyhow::Error {
-    let is_about_scene = !is_command_line(&error) && !error.is::<crate::output::PrintError>();
+    let is_about_scene = !is_command_line(&error) && !error.is::<crate::process::output::PrintError>();
     if !is_about_scene || scene == Path::new("-") {
         return error;
     }

@@ -1,8 +1,8 @@
 //! The options of renders that last, or that are watched.
 
-use crate::help;
+use crate::arguments::help;
+use crate::arguments::values::parse_duration;
 use crate::preview::PreviewChoice;
-use crate::values::parse_duration;
 use clap::Args;
 use std::time::Duration;
 

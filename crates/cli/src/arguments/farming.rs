@@ -1,7 +1,7 @@
 //! The arguments of `bilux farm`.
 
-use crate::help;
-use crate::values::{parse_chunks, parse_frames, parse_turntable};
+use crate::arguments::help;
+use crate::arguments::values::{parse_chunks, parse_frames, parse_turntable};
 use clap::Args;
 use std::path::PathBuf;
 

@@ -4,7 +4,7 @@
 //! Nothing here allocates memory or waits for another thread or process, since there may be no memory, the other thread may be
 //! the one that ends, and whoever should read the message may not.
 
-use crate::interrupt::interrupt;
+use crate::process::interrupt::interrupt;
 use serde_json::json;
 use std::cell::Cell;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,8 @@
 //! The options of `bilux explain`.
 
-use crate::choices::Posed;
-use crate::help;
-use crate::studio::StudioArguments;
+use crate::arguments::choices::Posed;
+use crate::arguments::help;
+use crate::arguments::studio::StudioArguments;
 use clap::Args;
 use std::path::PathBuf;
 

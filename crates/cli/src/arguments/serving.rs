@@ -1,8 +1,8 @@
 //! The options of `bilux serve`.
 
-use crate::choices::Choices;
-use crate::help;
-use crate::studio::StudioArguments;
+use crate::arguments::choices::Choices;
+use crate::arguments::help;
+use crate::arguments::studio::StudioArguments;
 use clap::Args;
 use std::net::IpAddr;
 use std::path::PathBuf;
@@ -35,7 +35,7 @@ pub struct Serve {
     #[arg(long, help_heading = help::COMMON_OPTIONS)]
     pub edit: bool,
     /// The time to show, in seconds, for animated scenes [default: 0]
-    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = crate::values::parse_time, help_heading = help::WHAT)]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = crate::arguments::values::parse_time, help_heading = help::WHAT)]
     pub at: Option<f32>,
     /// Change any setting of the picture (`bilux list settings`)
     #[arg(long = "set", value_name = "KEY=VALUE", help_heading = help::PICTURE)]

@@ -1,7 +1,7 @@
 //! The options of `bilux worker`.
 
-use crate::help;
-use crate::values::parse_duration;
+use crate::arguments::help;
+use crate::arguments::values::parse_duration;
 use clap::Args;
 use std::time::Duration;
 

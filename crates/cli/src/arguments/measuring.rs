@@ -1,8 +1,8 @@
 //! The options of `bilux bench`: each benchmark is a command of its own, so that its help lists what it takes, and what it
 //! does not take is refused.
 
-use crate::help;
-use crate::values::{parse_count, parse_cpu_seconds, parse_engine, parse_seeds};
+use crate::arguments::help;
+use crate::arguments::values::{parse_count, parse_cpu_seconds, parse_engine, parse_seeds};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 

@@ -1,8 +1,8 @@
 //! Progress: a bar on a terminal, a line every few seconds elsewhere.
 
 use crate::arguments::{Common, ProgressStyle};
-use crate::interrupt::Interrupt;
-use crate::output;
+use crate::process::interrupt::Interrupt;
+use crate::process::output;
 use bilux::transport::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle as BarStyle};
 use std::sync::Mutex;
