@@ -286,6 +286,7 @@ def test_bop_has_poses_and_masks(bop):
     hit = np.isfinite(picture["z_depth"])
     np.testing.assert_allclose(depth[hit], picture["z_depth"][hit] * 1e3, atol=0.1251)
     assert not depth[~np.isfinite(picture["z_depth"])].any()
+    whole = 0
     for number, (pose, known) in enumerate(zip(poses["1"], info["1"], strict=True), 1):
         assert pose["obj_id"] == {"star": 3, "moon": 5}[scene.objects[number].category]
         mask, visible = (png(folder / kind / f"000001_{number - 1:06}.png") > 0 for kind in ("mask", "mask_visib"))
@@ -296,6 +297,10 @@ def test_bop_has_poses_and_masks(bop):
         # As bop_toolkit_lib.misc.calc_2d_bbox has it: the width is that from the first column to the last.
         box = [columns.min(), rows.min(), np.ptp(columns), np.ptp(rows)] if len(rows) else [-1] * 4
         assert known["bbox_visib"] == box
+        rows, columns = mask.nonzero()
+        if len(rows) and rows.min() > 0 and columns.min() > 0 and rows.max() < SIZE[1] - 1 and columns.max() < SIZE[0] - 1:
+            assert known["bbox_obj"] == [columns.min(), rows.min(), np.ptp(columns), np.ptp(rows)]
+            whole += 1
         # A valid depth may be that of what hides the object.
         assert known["px_count_valid"] == np.count_nonzero(depth[mask])
         # The points of the visible surface, taken back into the model by the pose, are on its triangles.
@@ -306,6 +311,7 @@ def test_bop_has_poses_and_masks(bop):
         near = bilux.Accel(mesh.vertices, mesh.triangles).nearest_point(models / 1e3)
         assert near.distance.max(initial=0) < 1e-5
     assert any(known["px_count_valid"] > known["px_count_visib"] > 0 for known in info["1"])
+    assert whole > 0
 
 
 def test_the_bop_toolkit_reads_it(bop):

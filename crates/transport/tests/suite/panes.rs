@@ -98,7 +98,9 @@ fn two_panes_of_which_one_is_principled_let_their_product_through() {
     assert_eq!(mean(&scene, &*integrator("path"), 2, 1), Rgb::BLACK, "each pane is an event");
     square(&mut builder, Vec3::Y * 5.0, Vec3::Y, 14.0, pane(Rgb::grey(0.5)));
     let scene = built(&builder);
-    assert_eq!(mean(&scene, &*integrator("path"), 3, 1), Rgb::BLACK, "and so is the third");
+    for name in ["path", "bdpt", "vcm"] {
+        assert_eq!(mean(&scene, &*integrator(name), 3, 1), Rgb::BLACK, "{name}: and so is the third");
+    }
     assert_near("three", mean(&scene, &*integrator("path"), 4, 1), wanted * (0.5 * passed(1.5, 0.8)), 1e-4);
 }
 
@@ -118,12 +120,14 @@ fn what_is_sampled_through_panes_and_what_is_met_behind_them_add_up() {
         }
         assert_near("bdpt", mean(&scene, &*integrator("bdpt"), depth, 512), wanted, 0.03);
     }
-    for sampling in ["scattering", "mis", "lights"] {
-        assert_eq!(mean(&scene, &*path(sampling), 1, 64), Rgb::BLACK, "{sampling}");
+    let path = |sampling| Spec::new("", "path").with("sampling", sampling);
+    let both_ends = ["bdpt", "vcm"].map(|name| Spec::new("", name));
+    for spec in ["scattering", "mis", "lights"].map(path).into_iter().chain(both_ends) {
+        let integrator = integrators::build(&spec).unwrap();
+        assert_eq!(mean(&scene, &*integrator, 1, 64), Rgb::BLACK, "{spec:?}");
         let settings = RenderSettings { max_depth: 4, ..RenderSettings::new(16, 16, 64) };
-        let spec = Spec::new("", "path").with("sampling", sampling);
         let [direct, _] = parts(&scene, &spec, &settings).by_events.unwrap();
-        assert!(direct.to_rgb().iter().all(|light| light.is_black()), "{sampling}: a pane is an event");
+        assert!(direct.to_rgb().iter().all(|light| light.is_black()), "{spec:?}: a pane is an event");
     }
 }
 
