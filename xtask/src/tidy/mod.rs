@@ -11,6 +11,7 @@ mod figures;
 mod file_length;
 mod forbidden;
 mod front_page;
+mod front_page_names;
 mod function_length;
 mod ignored_tests;
 mod links;
@@ -59,6 +60,7 @@ const RULES: &[Rule] = &[
     Rule { name: "dependencies", check: dependencies::check },
     Rule { name: "changelog", check: changelog::check },
     Rule { name: "front-page", check: front_page::check },
+    Rule { name: "front-page-names", check: front_page_names::check },
     Rule { name: "figures", check: figures::check },
     Rule { name: "decisions", check: decisions::check },
 ];
