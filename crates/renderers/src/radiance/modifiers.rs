@@ -25,7 +25,7 @@ pub(super) enum Reference {
 /// A modifier as it is defined in one place.
 pub(super) struct Modifier {
     pub(super) primitive: Rc<Primitive>,
-    /// Modifier of this one in turn.
+    /// Modifier that modifies this one in turn.
     pub(super) under: Reference,
     /// The parts of a mixture, and the materials that an illum or a mirror has for eyes.
     pub(super) parts: Vec<Reference>,

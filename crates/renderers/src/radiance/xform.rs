@@ -25,7 +25,7 @@ pub(super) struct Xform {
 #[derive(Clone, Copy, Debug)]
 struct Group {
     matrix: DMat4,
-    /// Number of times that each copy has it; in an array, once more than the copy before.
+    /// Number of times that each copy has the transforms; in an array, once more than the copy before.
     times: u32,
     /// The number of copies, for an array.
     copies: Option<u32>,
