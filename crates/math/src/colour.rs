@@ -26,7 +26,7 @@ impl Rgb {
         Rgb { r, g, b }
     }
 
-    /// The same value in every channel.
+    /// Grey, with this value in every channel.
     pub const fn grey(value: f32) -> Rgb {
         Rgb { r: value, g: value, b: value }
     }

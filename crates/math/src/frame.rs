@@ -27,7 +27,7 @@ impl Frame {
         }
     }
 
-    /// The same frame rotated about its normal, so that its x axis is as close to `tangent` as possible; unchanged
+    /// This frame rotated about its normal, so that its x axis is as close to `tangent` as possible; unchanged
     /// where the tangent is along the normal or zero.
     #[inline]
     pub fn along(self, tangent: Vec3) -> Frame {

@@ -503,7 +503,7 @@ mod tests {
         random_motion(seed).then(&uneven).then(&random_motion(seed + 1000))
     }
 
-    /// How many of many sampled points of moving boxes lie outside the box shrunk by `shrink` of its size.
+    /// Number of sampled points of moving boxes that lie outside the boxes' bounds, shrunk by `shrink` of their size.
     fn escapes(of: fn(u64) -> Motion, shrink: f64) -> usize {
         let mut escaped = 0;
         for seed in 0..200 {

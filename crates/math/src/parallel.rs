@@ -184,7 +184,7 @@ fn within(pool: &ThreadPool, work: &mut (dyn FnMut() + Send)) {
     pool.install(work);
 }
 
-/// Whoever panics while it has the lock leaves everything whole, and the panic is passed on in the end.
+/// Locks `shared`, even after a panic in a thread that held the lock: that leaves everything whole, and is passed on in the end.
 fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
     shared.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -67,15 +67,15 @@ pub enum ParameterKind {
 /// One parameter of a registered variant.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
-    /// Its key in scene files, `snake_case`.
+    /// Key in scene files, `snake_case`.
     pub name: &'static str,
     /// One line for the user.
     pub summary: &'static str,
-    /// Its unit, or "" where it has none.
+    /// Unit of the value, or "" where it has none.
     pub unit: &'static str,
     /// The values that it can take.
     pub kind: ParameterKind,
-    /// Its default as written in a scene file, or "" where the value is required.
+    /// Default as written in a scene file, or "" where the value is required.
     pub default: &'static str,
 }
 
@@ -107,8 +107,8 @@ pub struct Entry {
     pub name: &'static str,
     /// One line for the user.
     pub summary: &'static str,
-    /// Its source: a key of `REFERENCES.md`, or "" for our own work.
+    /// Source: a key of `REFERENCES.md`, or "" for our own work.
     pub source: &'static str,
-    /// Its parameters.
+    /// Parameters of the variant.
     pub parameters: &'static [Parameter],
 }

@@ -1,4 +1,4 @@
-//! What all prims are added to.
+//! Context that all prims are added to.
 
 use super::value::Text;
 use bilux_import::FormatError;
@@ -17,7 +17,7 @@ pub(super) struct Worn {
     pub(super) uses_opacities: bool,
     /// The bits of the colour of meshes that have none, if it uses theirs.
     pub(super) without_colours: Option<[u32; 3]>,
-    /// It depends on a direction on the surface.
+    /// True if it depends on a direction on the surface.
     pub(super) has_direction: bool,
 }
 

@@ -8,7 +8,7 @@ use bilux_math::DMat4;
 use bilux_scene::Object;
 use std::collections::{HashMap, HashSet};
 
-/// How many prims of prototypes are looked at again for copies of other colours.
+/// Largest number of prims of prototypes that are looked at again for copies of other colours.
 const AGAIN_LIMIT: usize = 1 << 20;
 
 impl Scene<'_, '_> {

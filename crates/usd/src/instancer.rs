@@ -10,7 +10,7 @@ use bilux_math::{DMat4, DVec3};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
-/// Where the copies of a `PointInstancer` are.
+/// Copies of a `PointInstancer`, and where they are.
 pub(super) struct Copies {
     /// The prims that are copied.
     pub(super) prototypes: Vec<u32>,

@@ -1,4 +1,4 @@
-//! What kind of thing a prim is. [OpenUSD, UsdSemanticsLabelsAPI]
+//! Kind of thing that a prim is. [OpenUSD, UsdSemanticsLabelsAPI]
 
 use super::stage::Stage;
 use super::value::{Text, Value};

@@ -27,7 +27,7 @@ impl Fields {
     }
 }
 
-/// How a prim is written.
+/// Specifier with which a prim is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Specifier {
     Def,
@@ -36,7 +36,7 @@ pub(super) enum Specifier {
     Class,
 }
 
-/// What a layer says about a prim.
+/// Spec of a prim: what a layer says about it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PrimSpec {
     pub(super) name: Text,
@@ -56,11 +56,11 @@ pub(super) struct PrimSpec {
 #[derive(Clone, Debug)]
 pub(super) struct VariantSet {
     pub(super) name: Text,
-    /// What each says, as an index into [`Layer::prims`].
+    /// Name of each variant, and what it says, as an index into [`Layer::prims`].
     pub(super) variants: Vec<(Text, u32)>,
 }
 
-/// What a layer says about an attribute or a relationship.
+/// Spec of an attribute or a relationship: what a layer says about it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Property {
     pub(super) name: Text,
@@ -77,13 +77,13 @@ pub(super) struct Property {
 pub(super) struct Layer<'a> {
     /// For messages.
     pub(super) name: Text,
-    /// Where relative names begin; `None` if the bytes came from no file.
+    /// Folder where relative names begin; `None` if the bytes came from no file.
     pub(super) folder: Option<PathBuf>,
     /// The first is the layer itself, whose fields are its metadata.
     pub(super) prims: Vec<PrimSpec>,
     /// By parent and name.
     pub(super) by_name: HashMap<(u32, Text), u32>,
-    /// What packed values are read from.
+    /// Source of packed values.
     pub(super) packed: Option<Box<dyn Unpack + 'a>>,
 }
 
@@ -126,13 +126,13 @@ impl Layer<'_> {
         names.try_fold(0, |prim, name| self.by_name.get(&(prim, name.into())).copied())
     }
 
-    /// What it says about a property of the prim with a path.
+    /// Property of the prim with a path, as this layer states it.
     pub(super) fn property(&self, path: &str, name: &str) -> Option<&Property> {
         let prim = &self.prims[self.named(path)? as usize];
         prim.properties.iter().find(|property| &*property.name == name)
     }
 
-    /// Where a prim is.
+    /// Place of a prim in the file.
     pub(super) fn at(&self, prim: u32) -> Span {
         let (line, column) = self.prims[prim as usize].at;
         Span { file: self.name.clone(), line, column }
@@ -153,5 +153,5 @@ impl Layer<'_> {
 
 /// Approximate memory of a spec, for the budget.
 pub(super) const PRIM_BYTES: u64 = (size_of::<PrimSpec>() + 2 * size_of::<((u32, Text), u32)>()) as u64;
-/// The same for a property.
+/// Approximate memory of a property, for the budget.
 pub(super) const PROPERTY_BYTES: u64 = 2 * size_of::<Property>() as u64;

@@ -36,7 +36,7 @@ use bilux_import::world::frame::Frame;
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, UpHint};
 
-/// What both forms can hold.
+/// Features of a scene that both forms can hold.
 const CAPABILITIES: &[&str] = &[
     "points and lines",
     "triangles",
@@ -55,7 +55,7 @@ const CAPABILITIES: &[&str] = &[
     "variants",
 ];
 
-/// What layers can say of themselves. [OpenUSD]
+/// Axes and units that layers can state of themselves. [OpenUSD]
 const FRAME: Frame = Frame::Stated(&[Axis::Y, Axis::Z]);
 
 /// Row of the table of formats.

@@ -20,7 +20,7 @@ pub(super) struct Piece {
     pub(super) group: usize,
 }
 
-/// The same with its material.
+/// Part of a mesh with its material.
 #[derive(Clone)]
 pub(super) struct Part {
     pub(super) mesh: Arc<Mesh>,
@@ -106,7 +106,7 @@ fn sound_faces(
     Ok((corners, ends))
 }
 
-/// The same of any faces; those with vertices that are not there become holes, and make the answer false.
+/// Corners of any faces and their ends; faces with vertices that are not there become holes, and make the answer false.
 fn faces(
     counts: &Array,
     indices: &Array,
@@ -195,7 +195,7 @@ pub(super) fn add_normals(
     Ok(())
 }
 
-/// What the subdivision of a mesh would change.
+/// Notes what the subdivision of a mesh would change.
 pub(super) fn note_subdivision(stage: &Stage, prim: u32, subdivision: &Subdivision, scene: &mut Context) {
     if subdivision.scheme == Scheme::None {
         return;

@@ -185,7 +185,7 @@ impl Polygons {
     }
 }
 
-/// What some points have of an attribute; nothing if there is none.
+/// Values of an attribute at some points; none if there is no such attribute.
 fn values<T, const N: usize>(primvar: Option<Primvar>, points: &[u32], of: impl Fn([f32; N]) -> T) -> Vec<T> {
     let Some(primvar) = primvar else { return Vec::new() };
     let place = |&point: &u32| Place { corner: 0, vertex: point as usize, face: 0 };

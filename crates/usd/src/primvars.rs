@@ -6,7 +6,7 @@ use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 use std::sync::Arc;
 
-/// What each value is for.
+/// Elements that have a value each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Interpolation {
     Constant,

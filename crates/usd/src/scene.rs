@@ -18,7 +18,7 @@ use bilux_scene::Object;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// What a prim has from those above it.
+/// State that a prim has from those above it.
 #[derive(Clone, Debug)]
 pub(super) struct State {
     pub(super) world: DMat4,
@@ -28,10 +28,10 @@ pub(super) struct State {
     pub(super) binding: Option<Binding>,
 }
 
-/// What says all of a mesh: the same opinions make the same mesh, for materials that need the same of it.
+/// Key of a mesh, which says all of it: the same opinions make the same mesh, for materials that need the same of it.
 type Key = (Vec<[u64; 4]>, Vec<Worn>, Vec<[u64; 4]>);
 
-/// The same of a volume.
+/// Key of a volume, which says all of it.
 pub(super) type VolumeKey = (Vec<[u64; 4]>, Option<u32>, Vec<[u64; 4]>);
 
 /// A scene while prims are added to it.
@@ -44,9 +44,9 @@ pub(super) struct Scene<'r, 'o> {
     pub(super) plain: HashMap<([u32; 3], u32, bool), usize>,
     /// Materials that use the colours of vertices, as they are for meshes that have none.
     pub(super) uncoloured: HashMap<usize, usize>,
-    /// What prims `Material` are, if something that can be read.
+    /// Materials of prims `Material`; `None` for one that says nothing that can be read.
     pub(super) materials: HashMap<u32, Option<Worn>>,
-    /// The same by all that is said of them.
+    /// Materials by all that is said of them.
     pub(super) alike: HashMap<Vec<[u32; 2]>, Option<Worn>>,
     /// Skeletons.
     poses: HashMap<u32, Arc<Pose>>,
@@ -140,7 +140,7 @@ impl<'r, 'o> Scene<'r, 'o> {
         Ok(State { world, is_visible: above.is_visible && !hides, purpose, category, binding })
     }
 
-    /// What deforms a prim.
+    /// Rig that deforms a prim.
     fn rig(&mut self, stage: &Stage, prim: u32, state: &State) -> Result<Option<Rig>, FormatError> {
         let Some((binding, skeleton)) = state.binding.and_then(|b| Some((b, b.skeleton?))) else {
             return Ok(None);

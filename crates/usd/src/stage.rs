@@ -49,7 +49,7 @@ impl<'a> Stage<'a> {
         self.named(self.prim(prim).path.rsplit_once('/')?.0)
     }
 
-    /// What all layers say about a prim: equal for prims that are alike.
+    /// Key of all that layers say about a prim: equal for prims that are alike.
     pub(super) fn said(&self, prim: u32) -> impl Iterator<Item = [u64; 4]> {
         let Prim { opinions, clips, .. } = self.prim(prim);
         let own = opinions.iter().map(|o| {
@@ -68,13 +68,13 @@ impl<'a> Stage<'a> {
         &self.layers[opinion.layer as usize].prims[opinion.prim as usize]
     }
 
-    /// Where a prim is, with its path.
+    /// Place of a prim in its file.
     pub(super) fn at(&self, prim: u32) -> Span {
         let first = self.prim(prim).opinions.first();
         first.map_or_else(|| self.layers[0].at(0), |o| self.layers[o.layer as usize].at(o.prim))
     }
 
-    /// What all layers say about a property, the strongest first.
+    /// Opinions of all layers about a property, the strongest first.
     fn properties<'s>(
         &'s self,
         prim: u32,
@@ -273,7 +273,7 @@ impl<'a> Stage<'a> {
         list
     }
 
-    /// What all layers make of a list of numbers in the metadata of a prim.
+    /// Set of numbers that all layers make of a list in the metadata of a prim.
     pub(super) fn numbers(
         &self,
         prim: u32,

@@ -89,7 +89,7 @@ fn weights(basis: &str, t: f32) -> [f32; 4] {
     }
 }
 
-/// How the curves of a prim run between their control points.
+/// Course of the curves of a prim between their control points.
 struct Curves {
     is_cubic: bool,
     basis: String,

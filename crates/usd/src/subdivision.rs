@@ -1,4 +1,4 @@
-//! What a mesh says of its subdivision.
+//! Subdivision of a mesh, as the file states it.
 
 use super::stage::Stage;
 use super::value::Array;
@@ -7,7 +7,7 @@ use bilux_import::bytes::budget::Budget;
 use bilux_import::geometry::subdivision::Linear;
 use std::sync::Arc;
 
-/// How a mesh is subdivided.
+/// Scheme by which a mesh is subdivided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Scheme {
     /// Polygons.
@@ -31,7 +31,7 @@ pub(super) struct Subdivision {
     pub(super) crease_sharpnesses: Option<Arc<Array>>,
     pub(super) corner_indices: Option<Arc<Array>>,
     pub(super) corner_sharpnesses: Option<Arc<Array>>,
-    /// Where values of corners are linear.
+    /// Places where values of corners are linear.
     pub(super) linear: Linear,
     /// Corners of the border are rounded.
     pub(super) rounds_corners: bool,

@@ -1,4 +1,4 @@
-//! Where prims are: stacks of operations.
+//! Transforms of prims: stacks of operations.
 
 use super::stage::Stage;
 use super::value::Value;
@@ -11,7 +11,7 @@ use bilux_math::{DMat4, DVec3};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Local {
     pub(super) matrix: DMat4,
-    /// It does not move with its parent.
+    /// True if it does not move with its parent.
     pub(super) is_reset: bool,
 }
 

@@ -145,7 +145,7 @@ impl Array {
         std::array::from_fn(|k| if k < self.width { self.numbers.at(first + k) } else { 0.0 })
     }
 
-    /// The same with 32 bits.
+    /// Numbers of a tuple with 32 bits; zeros where it has fewer.
     #[inline]
     pub(super) fn floats<const N: usize>(&self, i: usize) -> [f32; N] {
         match &self.numbers {

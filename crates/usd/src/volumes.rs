@@ -16,14 +16,14 @@ use bilux_scene::media::Grid;
 use bilux_scene::{Mesh, Spec};
 use std::sync::Arc;
 
-/// How much of the light that it meets a volume without a material scatters: what OpenUSD's own renderer takes.
+/// Single-scattering albedo of a volume without a material: the one that OpenUSD's own renderer takes.
 const ALBEDO: f32 = 0.18;
 /// Temperatures of which none is above this one are in other units than kelvins.
 const COLDEST_FIRE: f32 = 500.0;
 
 /// A grid of a volume.
 struct Field {
-    /// What it is for.
+    /// Purpose of the grid.
     name: Text,
     prim: u32,
 }
@@ -127,7 +127,7 @@ fn filled(
     Ok(Some(Part { mesh: Arc::new(mesh), material }))
 }
 
-/// What fills a volume without a material, as in OpenUSD's own renderer: the density is the extinction.
+/// Medium of a volume without a material, as in OpenUSD's own renderer: the density is the extinction.
 fn unstated(stage: &Stage, prim: u32, context: &mut Context) -> Result<Filling, FormatError> {
     let budget = &mut context.reading.budget;
     let colour = Primvar::read(stage, prim, "primvars:displayColor", Interpolation::Constant, budget)?;

@@ -15,7 +15,7 @@ use bilux_scene::Spec;
 const PLAIN_BYTES: u64 = 2 * size_of::<Spec>() as u64 + 256;
 
 impl Scene<'_, '_> {
-    /// What a surface wears: what it is bound to, or else its own colour.
+    /// Material that a surface wears: the one that it is bound to, or else its own colour.
     pub(super) fn worn(&mut self, stage: &Stage, prim: u32) -> Result<Worn, FormatError> {
         let Some(material) = shading::bound(stage, prim, &self.lineage) else {
             return self.plain(stage, prim);
@@ -52,8 +52,8 @@ impl Scene<'_, '_> {
         self.of_material(stage, prim, worn)
     }
 
-    /// What a surface wears that is bound to a material, which says nothing that is read if there is none: if it uses the colours
-    /// of vertices, and there are none, with the colour that it states for that.
+    /// Material of a surface that is bound to `worn`; for `None`, which says nothing that is read, the surface's own colour. A
+    /// material that uses the colours of vertices, where there are none, has the colour that it states for that.
     fn of_material(&mut self, stage: &Stage, prim: u32, worn: Option<Worn>) -> Result<Worn, FormatError> {
         let Some(worn) = worn else { return self.plain(stage, prim) };
         let Some(bits) = worn.without_colours.filter(|_| worn.uses_colours) else { return Ok(worn) };

@@ -1,4 +1,4 @@
-//! The same tree front to back: the first hit in a pixel stays, and what is covered is skipped.
+//! A tree of the polygons' own planes, front to back: the first hit in a pixel stays, and what is covered is skipped.
 
 use crate::canvas::{Canvas, NO_OWNER};
 use crate::coverage::Coverage;
@@ -107,7 +107,7 @@ impl Drawing<'_> {
     }
 }
 
-/// How far the eye must be from a plane before its side decides which way a triangle along the plane faces.
+/// Minimum distance of the eye from a plane for its side to decide which way a triangle along the plane faces.
 ///
 /// The ray test takes the sign of the volume between the eye and the triangle, each corner of which may be
 /// `p = stray + radius` away from its position in the plane. That changes a volume (times six) of

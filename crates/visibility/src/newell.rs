@@ -61,12 +61,12 @@ enum Touching {
     All,
 }
 
-/// How a pair of pieces can be ordered.
+/// Outcome of ordering a pair of pieces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Order {
     /// The first hides nothing of the second.
     Clear,
-    /// The same except for the thickness of planes: they touch.
+    /// The first hides nothing of the second except for the thickness of planes: they touch.
     Touching,
     /// The first may hide the second.
     Unknown,
@@ -78,7 +78,7 @@ struct Painting<'a> {
     pieces: Vec<Piece>,
     /// By maximum depth, nearest first, so that the farthest is popped.
     sorted: Vec<u32>,
-    /// Those taken out of the list to be tried next; the last entry is first.
+    /// Pieces taken out of the list to be tried next; the last entry is first.
     next: Vec<u32>,
     triangles: usize,
     comparisons: u64,

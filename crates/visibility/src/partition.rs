@@ -26,7 +26,7 @@ pub(crate) struct Tree {
     dealt: usize,
 }
 
-/// How much work a triangle may cause (and a small scene altogether) before planes become infinitely thick, so that
+/// Limits of the work that a triangle may cause (and a small scene altogether) before planes become infinitely thick, so that
 /// depth orders the rest: pieces, tests on their outlines, and pieces distributed. All grow quadratically with the
 /// number of triangles where all triangles intersect each other, share a corner, or form a ball.
 const MAX_PIECES: usize = 16;

@@ -1,4 +1,4 @@
-//! What polygons become when planes cut them.
+//! Pieces that polygons become when planes cut them.
 
 use bilux_math::DVec3;
 

@@ -37,7 +37,7 @@ impl Plane {
         self.normal.dot(point) - self.offset
     }
 
-    /// The same plane seen from its other side.
+    /// This plane seen from its other side.
     pub(crate) fn flipped(&self) -> Plane {
         Plane { normal: -self.normal, offset: -self.offset }
     }

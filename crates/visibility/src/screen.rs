@@ -7,7 +7,7 @@ use bilux_accel::TriangleMesh;
 use bilux_accel::triangle::PreparedRay;
 use bilux_math::DVec3;
 
-/// How far the ray test may deviate from the triangles that it is given.
+/// Maximum deviation of the ray test from the triangles that it is given.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Slack {
     /// Every hit, and every vertex as the test sees it, lies within a ball of this radius around a point of
@@ -23,7 +23,7 @@ pub(crate) struct Screen<'a> {
     pub(crate) view: &'a View,
     pub(crate) eye: DVec3,
     pub(crate) slack: Slack,
-    /// What is in front of the eye and within the rectangle of pixel centres.
+    /// Region in front of the eye and within the rectangle of pixel centres.
     frustum: [Plane; 5],
 }
 
@@ -50,7 +50,7 @@ impl Rect {
         Rect { x: common(self.x, other.x), y: common(self.y, other.y) }
     }
 
-    /// Its four quarters, or two where it is one pixel wide or high.
+    /// Four quarters of it, or two halves where it is one pixel wide or high.
     pub(crate) fn quarters(&self) -> impl Iterator<Item = Rect> {
         let halves = |(first, end): (usize, usize)| {
             let middle = first + (end - first) / 2;
@@ -73,7 +73,7 @@ pub(crate) struct Footprint {
     pub(crate) rect: Rect,
     /// Minimum and maximum depth along the view's axis, of the visible part.
     pub(crate) depth: (f64, f64),
-    /// Its corners on the screen one unit in front of the eye; `None` when it comes too near to the eye.
+    /// Corners on the screen one unit in front of the eye; `None` when the polygon comes too near to the eye.
     pub(crate) outline: Option<Outline>,
 }
 

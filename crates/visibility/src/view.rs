@@ -135,7 +135,7 @@ impl View {
         View::new(eye, width, height, directions, 0.0)
     }
 
-    /// The same view, without anything nearer than `t_min` lengths of each direction.
+    /// This view, without anything nearer than `t_min` lengths of each direction.
     ///
     /// # Errors
     /// Returns an error when `t_min` is negative or not finite.

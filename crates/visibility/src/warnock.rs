@@ -54,7 +54,7 @@ fn run(view: &View, mesh: &TriangleMesh, options: &VisibilityOptions) -> Visibil
     canvas.finish(0.0)
 }
 
-/// How a triangle covers a window.
+/// Part of a window that a triangle covers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Cover {
     /// Possibly some of it.
@@ -148,7 +148,7 @@ struct Window {
     rect: Rect,
     x: (f64, f64),
     y: (f64, f64),
-    /// Its sides, as planes through the eye with the window in front of them.
+    /// Sides of the window, as planes through the eye with the window in front of them.
     sides: [Plane; 4],
 }
 
@@ -163,7 +163,7 @@ impl Window {
         Window { rect, x, y, sides }
     }
 
-    /// Those of the parent's triangles that may be visible here, and how they cover the window.
+    /// Triangles of the parent that may be visible here, and how they cover the window.
     fn classify(&self, parent: &[(u32, Cover)], candidates: &[Candidate]) -> Vec<(u32, Cover)> {
         let look = |&(index, cover): &(u32, Cover)| match cover {
             Cover::Whole => Some((index, cover)),
@@ -251,7 +251,7 @@ fn draw_one(rect: Rect, candidate: &Candidate, canvas: &mut Canvas) {
     });
 }
 
-/// Where windows cannot be divided further, depth decides.
+/// Draws the triangles of a window that cannot be divided further, where depth decides.
 fn draw_pixel(rect: Rect, inside: &[(u32, Cover)], candidates: &[Candidate], canvas: &mut Canvas) {
     canvas.each_pixel(rect, |canvas, pixel| {
         for &(index, _) in inside {

@@ -7,7 +7,7 @@ use bilux_math::{DMat4, DVec3, Rgb};
 use bilux_scene::{Span, Texture};
 use std::f64::consts::{FRAC_2_PI, PI, TAU};
 
-/// How an image maps to directions; z is up.
+/// Mapping of an image to directions; z is up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mapping {
     /// The upper hemisphere is the inner square, standing on its corner; the lower one fills the four corners.

@@ -1,4 +1,4 @@
-//! What fills shapes: media that are the same everywhere, or as dense as a grid says.
+//! Media that fill shapes: the same everywhere, or as dense as a grid says.
 
 use crate::FormatError;
 use crate::input::oddities::Oddities;

@@ -1,4 +1,4 @@
-//! What boundaries reflect.
+//! Reflectances of boundaries.
 
 use bilux_math::Rgb;
 

@@ -17,7 +17,8 @@ pub fn normals_of_heights(texture: &Texture, bump: f32) -> Texture {
     normals_of_stretched_heights(texture, [bump, bump])
 }
 
-/// The same for texels that are not square: white is so many widths of a texel higher than black, and so many heights.
+/// Converts a height map to a normal map where texels are not square: white is higher than black by `along_u` widths of a texel,
+/// and by `along_v` heights.
 pub fn normals_of_stretched_heights(texture: &Texture, [along_u, along_v]: [f32; 2]) -> Texture {
     let (width, height) = (texture.width(), texture.height());
     let at = |x: usize, y: usize| texture.texel(x % width, y % height).luminance();

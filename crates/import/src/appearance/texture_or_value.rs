@@ -39,7 +39,7 @@ impl TextureOrValue {
         }
     }
 
-    /// Its value at texture coordinates.
+    /// Value at texture coordinates.
     pub fn at(&self, uv: Vec2) -> Rgb {
         match self {
             TextureOrValue::Colour(colour) => *colour,

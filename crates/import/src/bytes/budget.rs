@@ -1,4 +1,4 @@
-//! How much more memory a reader may use.
+//! Memory that a reader may still use.
 
 use crate::FormatError;
 

@@ -21,9 +21,9 @@ pub enum FormatError {
     /// The file violates its format.
     #[error("{at}: {message}")]
     Malformed {
-        /// What is wrong and what to do.
+        /// Fault, and what to do about it.
         message: String,
-        /// Where it is.
+        /// Place of the fault.
         at: Span,
     },
     /// A file that another file refers to does not exist.
@@ -33,7 +33,7 @@ pub enum FormatError {
         name: String,
         /// The folder that was searched.
         folder: PathBuf,
-        /// Where it is referred to.
+        /// Place of the reference.
         at: Span,
     },
     /// A file that another file refers to lies outside the scene's folder.
@@ -44,7 +44,7 @@ pub enum FormatError {
     Outside {
         /// The name as written.
         name: String,
-        /// Where it is referred to.
+        /// Place of the reference.
         at: Span,
     },
     /// Reading needs more memory than is allowed.
@@ -54,9 +54,9 @@ pub enum FormatError {
     TooLarge {
         /// The file.
         file: String,
-        /// How many bytes are allowed.
+        /// Number of bytes allowed.
         limit: u64,
-        /// How many it had asked for by then; it may need more.
+        /// Number of bytes that reading had asked for by then; it may need more.
         asked: u64,
     },
     /// No format has this name.
@@ -90,7 +90,7 @@ pub enum FormatError {
     IsPicture {
         /// The file.
         name: String,
-        /// Its picture format.
+        /// Picture format of the file.
         format: &'static str,
     },
     /// The file is a picture, in a format that Bilux does not read.
@@ -100,9 +100,9 @@ pub enum FormatError {
     IsForeignPicture {
         /// The file.
         name: String,
-        /// What it is.
+        /// Kind of the picture.
         what: &'static str,
-        /// What to do with it.
+        /// Advice on what to do with it.
         advice: &'static str,
     },
     /// The file is in a format of other programs.
@@ -110,9 +110,9 @@ pub enum FormatError {
     IsForeign {
         /// The file.
         name: String,
-        /// What it is.
+        /// Kind of the file.
         what: &'static str,
-        /// What to do with it.
+        /// Advice on what to do with it.
         advice: &'static str,
     },
     /// A name or a value in a scene file is wrong.

@@ -1,4 +1,4 @@
-//! What files are made of: text, numbers, archives, XML, within the memory that a reader may use; and what can be wrong with them.
+//! Parts of files: text, numbers, archives, XML, within the memory that a reader may use; and the errors of reading them.
 
 pub mod archive;
 pub mod blocks;

@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
-/// How the name of the file in a URI may be spelt on the disk. A query or a fragment is no part of the name, unless it
-/// is; and some exporters write names as they are, without escapes, even if they contain `%`, `?` or `#`.
+/// Names that the file of a URI may have on the disk. A query or a fragment usually is no part of the name, but may be: some
+/// exporters write names as they are, without escapes, even if they contain `%`, `?` or `#`.
 pub fn spellings(uri: &str) -> Vec<String> {
     let path = &uri[..uri.find(['?', '#']).unwrap_or(uri.len())];
     let mut names: Vec<String> = Vec::new();

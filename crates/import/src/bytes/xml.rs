@@ -68,7 +68,7 @@ impl<'a> Xml<'a> {
         self.places.file()
     }
 
-    /// Where an element begins.
+    /// Place where an element begins.
     pub fn at(&self, node: Node) -> Span {
         self.places.at(node.range().start)
     }

@@ -6,7 +6,7 @@ use std::io::{Cursor, Write};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-/// How members are stored.
+/// Way in which members are stored.
 #[derive(Clone, Copy, Debug)]
 pub enum Members {
     /// As they are, each at a multiple of 64 bytes, so that programs can map them into memory, as USDZ demands.

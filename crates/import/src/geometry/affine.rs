@@ -1,4 +1,4 @@
-//! What affine maps do to normals.
+//! Transforms of normals by affine maps.
 
 use bilux_math::{DMat3, DMat4};
 

@@ -4,7 +4,7 @@ use bilux_math::parallel::{map, table, threads};
 use bilux_math::transcendental::cos;
 use bilux_math::{DVec3, Vec3};
 
-/// How a face is smoothed with its neighbours: [`FLAT`], [`BY_ANGLE`], or the number of a smoothing group.
+/// Smoothing of a face with its neighbours: [`FLAT`], [`BY_ANGLE`], or the number of a smoothing group.
 pub type Smoothing = u32;
 /// The face is flat, whatever its neighbours.
 pub const FLAT: Smoothing = 0;
@@ -80,12 +80,12 @@ impl Faces<'_> {
         any_smooth.then_some(normals)
     }
 
-    /// The same, whether or not they are needed.
+    /// Normals of [`Faces::corner_normals`], whether or not they are needed.
     pub fn all_corner_normals(self, crease_angle: f32) -> CornerNormals {
         self.normals_and_whether_needed(crease_angle).0
     }
 
-    /// The same, and whether they are needed.
+    /// Normals of [`Faces::corner_normals`], and whether they are needed.
     pub fn normals_and_whether_needed(mut self, crease_angle: f32) -> (CornerNormals, bool) {
         let angle = crease_angle.clamp(0.0, 180.0).to_radians();
         let crease = Crease { whole: cos(angle), half: cos(0.5 * angle) };

@@ -3,7 +3,7 @@
 /// The word that begins a comment, by format.
 const COMMENTS: [(&str, &str); 4] = [("obj", "#"), ("ply", "comment"), ("off", "#"), ("pbrt", "#")];
 
-/// How far into a file comments are read, in lines and in letters.
+/// Length of the head of a file in which comments are read, in lines and in letters of each.
 const LINES: usize = 12;
 const LONGEST: usize = 200;
 

@@ -1,4 +1,4 @@
-//! What the user chooses among the things of a file.
+//! Choice by the user among the things of a file.
 
 use crate::FormatError;
 use bilux_scene::Span;

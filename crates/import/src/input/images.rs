@@ -8,7 +8,7 @@ use bilux_pictures::{
 use bilux_scene::Texture;
 use bilux_scene::texture::{Image, Texels};
 
-/// How to interpret the samples of a picture file.
+/// Interpretation of the samples of a picture file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SampleMeaning {
     /// Colours, encoded as the file states.

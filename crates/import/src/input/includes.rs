@@ -23,7 +23,7 @@ pub struct Includes {
 
 /// A file that is included.
 pub struct Included {
-    /// What messages call it.
+    /// Name of the file in messages.
     pub name: Arc<str>,
     pub bytes: Vec<u8>,
 }

@@ -10,7 +10,7 @@ use std::ffi::OsString;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-/// What is known of names that differ from those on the disk in upper and lower case.
+/// Known names that differ from those on the disk in upper and lower case.
 #[derive(Default)]
 struct Names {
     /// The names in a folder, by their lower-case form; of several the first.
@@ -35,7 +35,7 @@ impl Names {
         renamed.entry(name.to_owned()).or_insert_with(|| (what(), at.clone()));
     }
 
-    /// What a name in a folder is called there, if only upper and lower case differ.
+    /// Spelling of a name in a folder, if only upper and lower case differ.
     fn called(&self, folder: &Path, name: &str) -> Option<OsString> {
         let mut listings = self.listings.borrow_mut();
         let listing = listings.entry(folder.to_owned()).or_insert_with(|| {
@@ -50,7 +50,7 @@ impl Names {
     }
 }
 
-/// Where files may be.
+/// Folders and archives where files may be.
 pub struct Locator {
     /// Nothing outside this folder is opened, except files in [`Locator::working_folder`]: the scene's own, or that of its package.
     root: Option<PathBuf>,
@@ -59,7 +59,7 @@ pub struct Locator {
     pub working_folder: Option<PathBuf>,
     /// The archives that are open, whose members are found as files are, and nothing else from inside of them.
     pub archives: Archives,
-    /// What was found under other names.
+    /// Files that were found under other names.
     names: Names,
 }
 
@@ -104,7 +104,7 @@ impl Locator {
         Err(first.unwrap_or_else(|| FormatError::malformed("a file name is missing here", at.clone())))
     }
 
-    /// The same as [`Locator::locate`], but finds the files in `open`, which are being read, only under their full names.
+    /// Finds a file as [`Locator::locate`] does, but the files in `open`, which are being read, only under their full names.
     pub fn locate_except(
         &self,
         folder: Option<&Path>,
@@ -233,7 +233,7 @@ const MAX_PARTS: usize = 16;
 /// Folders of textures, in packs of models beside those of each format.
 const TEXTURES: [&str; 4] = ["textures", "texture", "Textures", "Texture"];
 
-/// What lies at the top of a package: of ROS, of Gazebo, of Git.
+/// Files and folders at the top of a package: of ROS, of Gazebo, of Git.
 const MARKS: [&str; 3] = ["package.xml", "model.config", ".git"];
 
 /// The most folders between a model and the top of its package.

@@ -22,7 +22,7 @@ impl Reading<'_> {
         self.mount_data(path, Data::of_file(file, length), name)
     }
 
-    /// The same for an archive in memory.
+    /// Opens an archive in memory, so that its members are files below `root`, until [`Reading::unmount`].
     pub fn mount_bytes(&mut self, root: &Path, bytes: &[u8], name: &Arc<str>) -> Result<(), FormatError> {
         self.budget.take_bytes(bytes.len() as u64, name)?;
         self.budget.release(bytes.len() as u64);

@@ -1,4 +1,4 @@
-//! What is odd about a file, and what it has that the picture does not show, each said once.
+//! Oddities of a file, and what it has that the picture does not show, each said once.
 
 use bilux_scene::{SceneBuilder, Span, Warning};
 
@@ -26,7 +26,7 @@ impl Oddity {
     }
 }
 
-/// How an oddity is reported.
+/// Way in which an oddity is reported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Grade {
     /// By a warning.
@@ -69,7 +69,7 @@ impl Oddities {
         }
     }
 
-    /// The same with text about the first of the kind, which precedes the common text.
+    /// Counts one of a kind as [`Oddities::note`] does, with text about the first, which precedes the common text.
     pub fn note_first(&mut self, what: &str, first: impl FnOnce() -> String, at: impl FnOnce() -> Span) {
         if let Some(new) = self.count(Grade::Fault, what, 1) {
             new.at = at();
@@ -94,7 +94,7 @@ impl Oddities {
         }
     }
 
-    /// The same for data that nobody expects to see, which become one note.
+    /// Names data of the file that nobody expects to see. All such data of a file become one note.
     pub fn not_used(&mut self, what: &str, at: impl FnOnce() -> Span) {
         if let Some(new) = self.count(Grade::NotUsed, what, 1) {
             new.at = at();

@@ -39,7 +39,7 @@ pub struct ReadOptions {
     pub subdivide: Option<Scheme>,
     /// Values for variables of the scene, by their names (Mitsuba): they replace the defaults of the file.
     pub definitions: Vec<(String, String)>,
-    /// How to interpret transmissive materials without a thickness.
+    /// Interpretation of transmissive materials without a thickness.
     pub glass: Glass,
     /// The radius of point lights in metres, if above 0.
     pub light_radius: f32,
@@ -72,7 +72,7 @@ impl Default for ReadOptions {
     }
 }
 
-/// How to interpret transmissive materials without a thickness.
+/// Interpretation of transmissive materials without a thickness.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Glass {
     /// Solid if the mesh is closed, otherwise thin walls.

@@ -27,20 +27,20 @@ use std::sync::Arc;
 pub struct Source<'a> {
     /// The whole file, or only its beginning if the file is read in blocks.
     pub bytes: &'a [u8],
-    /// Its name, for messages.
+    /// Name of the file, for messages.
     pub name: &'a Arc<str>,
     /// The folder of the file, which relative names refer to; `None` if the bytes came from no file.
     pub folder: Option<&'a Path>,
 }
 
 impl Source<'_> {
-    /// Its name without folder and extension.
+    /// Name of the file without folder and extension.
     pub fn stem(&self) -> String {
         Path::new(&**self.name).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned())
     }
 }
 
-/// How the texels of a texture are interpreted.
+/// Interpretation of the texels of a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Texels {
     /// Colours, converted to linear light.
@@ -84,7 +84,7 @@ pub struct Reading<'o> {
     texture_bytes: u64,
     /// The part of these bytes that is in [`Reading::textures`] or [`Reading::grids`].
     kept_bytes: u64,
-    /// What was wrong with the texels of pictures and the voxels of grids.
+    /// Faults in the texels of pictures and the voxels of grids.
     picture_faults: Vec<Warning>,
     /// Scenes inserted into other scenes, each read once.
     pub models: HashMap<PathBuf, Arc<SceneBuilder>>,
@@ -107,7 +107,7 @@ pub struct MemoryHeld {
     budget: Budget,
     /// The size of all textures read.
     textures: u64,
-    /// That of the textures that are found again by their names.
+    /// Size of the textures that are found again by their names.
     kept: u64,
 }
 
@@ -161,7 +161,7 @@ impl<'o> Reading<'o> {
         self.budget.release(self.budget.spent().saturating_sub(now));
     }
 
-    /// What counts as held.
+    /// Memory that counts as held.
     pub fn memory_held(&self) -> MemoryHeld {
         MemoryHeld { budget: self.budget.clone(), textures: self.texture_bytes, kept: self.kept_bytes }
     }
@@ -356,7 +356,7 @@ impl<'o> Reading<'o> {
         self.texture_of_layer(folder, name, None, holds, at)
     }
 
-    /// The same of one layer of a picture.
+    /// One layer of a picture as a texture, decoded only once.
     pub fn texture_of_layer(
         &mut self,
         folder: Option<&Path>,

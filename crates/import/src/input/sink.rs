@@ -1,4 +1,4 @@
-//! What a reader writes: a scene, and what is odd about the file.
+//! Output of a reader: a scene, and what is odd about the file.
 
 use crate::input::oddities::Oddities;
 use bilux_scene::SceneBuilder;

@@ -91,7 +91,7 @@ impl Waiting {
     }
 }
 
-/// How many times a cage is refined until its edges are short in every view.
+/// Number of times that a cage is refined until its edges are short in every view.
 fn levels(views: &Views, objects: &[&Object], pending: &PendingCage) -> u32 {
     let bounds = Aabb::of_points(pending.cage.positions());
     let pixels = objects.iter().map(|object| views.pixel_on(object, &bounds));

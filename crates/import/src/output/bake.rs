@@ -8,7 +8,7 @@ use bilux_scene::{Mesh, Object, SceneBuilder, Spec, Value};
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// The same scene without media that have no surface, in formats that cannot hold them: as objects they would be opaque boxes.
+/// Scene without the media that have no surface, in formats that cannot hold them: as objects they would be opaque boxes.
 pub fn without_media<'a>(
     scene: &'a SceneBuilder,
     capabilities: &[&str],

@@ -18,7 +18,7 @@ pub struct Writing<'o> {
     read: BTreeSet<PathBuf>,
     /// The main file's name without folder and extension.
     pub stem: String,
-    /// Its extension, in lower case.
+    /// Extension of the main file, in lower case.
     pub extension: String,
     /// The main file.
     pub main: Vec<u8>,
@@ -60,7 +60,7 @@ impl<'o> Writing<'o> {
         scene.textures.get(index).map(|texture| self.texture_file(texture)).transpose()
     }
 
-    /// The same for a texture that may be nested in another.
+    /// File name of a texture that may be nested in another, as [`Writing::texture`] gives it.
     pub fn texture_file(&mut self, texture: &Texture) -> Result<String, FormatError> {
         if let Some((_, name)) = self.textures.iter().find(|(known, _)| have_one_file(known, texture)) {
             return Ok(name.clone());
@@ -85,7 +85,7 @@ impl<'o> Writing<'o> {
         self.add_first_free(std::iter::once(format!("{stem}.{extension}")).chain(numbered), bytes)
     }
 
-    /// The same for one of several files: `STEM-KIND-NUMBER.EXTENSION`, with this number or the next that is free.
+    /// Adds one of several files and returns its name: `STEM-KIND-NUMBER.EXTENSION`, with this number or the next that is free.
     pub fn add_numbered(&mut self, kind: &str, number: usize, extension: &str, bytes: Vec<u8>) -> String {
         let stem = self.stem.clone();
         self.add_first_free((number..).map(|i| format!("{stem}-{kind}-{i}.{extension}")), bytes)

@@ -274,7 +274,7 @@ impl OtherFormats for Formats {
     }
 }
 
-/// The same for a source that may hold only the beginning of its bytes, with a reader that streams them.
+/// Reads as [`read_source`] does, but the source may hold only the beginning of its bytes, with a reader that streams them.
 fn flow(
     row: &SceneFormatEntry,
     reading: &mut Reading,

@@ -15,9 +15,9 @@ use std::path::Path;
 /// One format: a row of the table.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneFormatEntry {
-    /// Its name, summary, source and parameters.
+    /// Name, summary, source and parameters of the format.
     pub entry: Entry,
-    /// Its extensions in lower case without the dot, the usual one first.
+    /// Extensions in lower case without the dot, the usual one first.
     pub extensions: &'static [&'static str],
     /// The features of a scene that a file of this format can hold.
     pub capabilities: &'static [&'static str],

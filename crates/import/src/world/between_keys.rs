@@ -1,4 +1,4 @@
-//! What animations do between their keys.
+//! Interpolation of animations between their keys.
 
 use bilux_math::glam::DQuat;
 use bilux_math::transcendental::{atan2_f64, sin_f64};

@@ -1,4 +1,4 @@
-//! What cameras lose in formats that know only plain perspective ones.
+//! Losses of cameras in formats that know only plain perspective ones.
 
 use crate::output::writing::Writing;
 use bilux_math::transcendental::{atan, tan};
@@ -48,7 +48,8 @@ pub fn field_of_view(spec: &Spec) -> f32 {
     degrees.clamp(1.0, 120.0)
 }
 
-/// The same in a picture of this aspect ratio, which shows more where the camera's `frame` would not fit.
+/// Vertical field of view as in [`field_of_view`], in a picture of this aspect ratio, which shows more where the camera's `frame`
+/// would not fit.
 pub fn field_of_view_in(spec: &Spec, aspect: f32) -> f32 {
     let vertical = field_of_view(spec);
     let wider = spec.number("frame").map_or(1.0, |frame| frame / aspect);

@@ -1,4 +1,4 @@
-//! Where things are: axes and units, transforms, animations, cameras, and what is all around.
+//! Placement of things: axes and units, transforms, animations, cameras, and what is all around.
 
 pub mod between_keys;
 pub mod camera_loss;

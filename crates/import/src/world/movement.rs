@@ -1,4 +1,4 @@
-//! Where the objects of an animated scene go.
+//! Movement of the objects of an animated scene.
 
 use crate::FormatError;
 use crate::input::sink::Sink;

@@ -1,4 +1,4 @@
-//! How large the pixels of pictures are on what a scene shows.
+//! Sizes of the pixels of pictures on what a scene shows.
 
 use crate::output::values::vector;
 use bilux_math::transcendental::tan;

@@ -5,7 +5,7 @@ use crate::Transform;
 use glam::{DQuat, DVec3, Mat4};
 use std::sync::Arc;
 
-/// What a motion consists of.
+/// Numbers that a motion consists of.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MotionNumbers {
     /// The identity.

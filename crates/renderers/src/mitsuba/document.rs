@@ -1,4 +1,4 @@
-//! What the elements of a file describe, before anything is made of it.
+//! Descriptions that the elements of a file give, before anything is made of them.
 
 use super::plugin::{Plugin, Property, Value};
 use bilux_import::FormatError;
@@ -84,7 +84,7 @@ impl Document {
     }
 }
 
-/// Where the files are that a scene names.
+/// Folders of the files that a scene names.
 #[derive(Default)]
 pub(super) struct Files {
     /// The folder of the first file.

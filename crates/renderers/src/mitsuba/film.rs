@@ -135,7 +135,7 @@ fn read_filter(maker: &mut Maker, filter: &Plugin, settings: &mut Parameters) ->
 
 /// Integrators that render with another one inside.
 const WRAPPERS: [&str; 5] = ["aov", "moment", "stokes", "adaptive", "irrcache"];
-/// Those whose pictures are the light of a scene.
+/// Integrators whose pictures are the light of a scene.
 const KNOWN: [&str; 19] = [
     "path",
     "volpath",

@@ -1,4 +1,4 @@
-//! What everything that is made of plugins shares: colours, textures, and what the scene has so far.
+//! Maker of parts of the scene from plugins, with what all kinds share: colours, textures, and what the scene has so far.
 
 use super::document::{Document, Files};
 use super::plugin::{Plugin, Value as Given};
@@ -13,7 +13,7 @@ use std::collections::HashMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// What a colour describes.
+/// Meaning of a colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Meaning {
     /// A reflectance.
@@ -24,7 +24,7 @@ pub(super) enum Meaning {
     Light,
 }
 
-/// What looks up plugins of each kind in their table, so that these may contain one another.
+/// Functions that look up plugins of each kind in their table, so that these may contain one another.
 #[derive(Clone, Copy)]
 pub(super) struct Tables {
     pub(super) texture: fn(&mut Maker, &Plugin, Meaning) -> Result<TextureOrValue, FormatError>,
@@ -45,7 +45,7 @@ pub(super) struct Maker<'p, 'o> {
     made: HashMap<(*const Plugin, Meaning), TextureOrValue>,
     /// The materials of the scene.
     pub(super) materials: Vec<Spec>,
-    /// How long one unit of each texture coordinate is on the shape whose material is made.
+    /// Length of one unit of each texture coordinate on the shape whose material is made.
     pub(super) extent: [f32; 2],
     /// The number of plugins around the one that is being made.
     depth: usize,
@@ -171,7 +171,7 @@ impl<'p, 'o> Maker<'p, 'o> {
         Ok(Some(TextureOrValue::Colour(colour)))
     }
 
-    /// The same, or a grey.
+    /// Colour or texture of a property, or else a grey.
     pub(super) fn source_or(
         &mut self,
         plugin: &Plugin,

@@ -18,7 +18,7 @@ use std::f32::consts::LN_2;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// What materials differ by: the shape's material, emission and medium, the matrix of one that is filled from a grid, and the size of
+/// Key of a material: the shape's material, emission and medium, the matrix of a shape that is filled from a grid, and the size of
 /// one that has bumps.
 type MaterialKey = ([Option<*const Plugin>; 3], [u64; 16], [u32; 2]);
 
@@ -38,7 +38,7 @@ pub(super) struct Placer<'p, 'o> {
     pub(super) lights: Vec<Spec>,
 }
 
-/// What a shape has besides its geometry.
+/// Properties of a shape besides its geometry.
 struct Attributes {
     bsdf: Option<Rc<Plugin>>,
     emitter: Option<Rc<Plugin>>,
@@ -131,7 +131,7 @@ impl<'p, 'o> Placer<'p, 'o> {
         Ok(())
     }
 
-    /// What a shape emits.
+    /// Emission of a shape.
     fn emission_of(&mut self, attributes: &Attributes) -> Result<Option<Emission>, FormatError> {
         let Some(emitter) = &attributes.emitter else { return Ok(None) };
         if let Some(known) = self.emissions.get(&Rc::as_ptr(emitter)) {
@@ -242,8 +242,8 @@ impl<'p, 'o> Placer<'p, 'o> {
     }
 }
 
-/// How long one unit of each texture coordinate is on a mesh in place, in the mean of some of its triangles; rounded, so that shapes of
-/// about the same size share a material.
+/// Length of one unit of each texture coordinate on a mesh in place, in the mean of some of its triangles; rounded, so that shapes
+/// of about the same size share a material.
 fn extent(mesh: &Mesh, to_world: &DMat4) -> [f32; 2] {
     const MOST: usize = 1000;
     let (mut sums, mut area) = ([0.0; 2], 0.0);

@@ -1,4 +1,4 @@
-//! What an element describes: a plugin of Mitsuba with its properties.
+//! Plugins of Mitsuba with their properties, as elements describe them.
 
 use super::transforms::Placement;
 use super::values::GivenColour;
@@ -62,7 +62,7 @@ impl Plugin {
         Plugin { tag, kind, id, properties, at, asked: RefCell::default() }
     }
 
-    /// What messages call it.
+    /// Name of the plugin in messages.
     pub(super) fn named(&self) -> String {
         format!("the {} '{}'", self.tag, shortened(&self.kind))
     }
@@ -119,7 +119,7 @@ impl Plugin {
         }
     }
 
-    /// The same, or a default.
+    /// Finite number, or a default.
     pub(super) fn number_or(&self, name: &'static str, default: f64) -> Result<f64, FormatError> {
         Ok(self.number(name)?.unwrap_or(default))
     }

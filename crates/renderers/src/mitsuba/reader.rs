@@ -20,7 +20,7 @@ use bilux_import::input::sink::Sink;
 use bilux_scene::{Parameters, SceneBuilder};
 use std::path::Path;
 
-/// What parts of a scene may contain.
+/// Makers of what parts of a scene may contain.
 const TABLES: Tables = Tables { texture: textures::make, material: bsdfs::material };
 
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
@@ -44,7 +44,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     finish(placer, seen, source)
 }
 
-/// What a scene has besides shapes.
+/// Parts of a scene besides shapes.
 #[derive(Default)]
 struct Seen {
     cameras: Vec<bilux_scene::cameras::CameraSpec>,

@@ -72,7 +72,7 @@ fn constant(maker: &mut Maker, plugin: &Plugin, meaning: Meaning) -> Result<Text
     maker.source_or(plugin, name, meaning, 1.0)
 }
 
-/// The same number in all channels, also as a light: unlike a spectrum without a type.
+/// One number for all channels, also as a light: unlike a spectrum without a type.
 fn uniform(_: &mut Maker, plugin: &Plugin, _: Meaning) -> Result<TextureOrValue, FormatError> {
     plugin.ignore(&["wavelength_min", "wavelength_max"]);
     Ok(TextureOrValue::Colour(Rgb::grey(plugin.number_or("value", 1.0)?.max(0.0) as f32)))

@@ -18,7 +18,7 @@ impl Placement {
         self.0.first().map_or(DMat4::IDENTITY, |(_, matrix)| *matrix)
     }
 
-    /// The same after a constant transform of what it places.
+    /// Placement after a constant transform of what it places.
     pub(super) fn after(&self, first: &DMat4) -> Placement {
         Placement(self.0.iter().map(|(time, matrix)| (*time, *matrix * *first)).collect())
     }
@@ -101,7 +101,7 @@ pub(super) fn step(
     if matrix.is_finite() { Ok(Some(matrix)) } else { fail("this transform overflows") }
 }
 
-/// What Mitsuba's formula for a rotation gives for an axis that is not of length 1: it also scales and skews.
+/// Matrix by Mitsuba's formula for a rotation. With an axis that is not of length 1, it also scales and skews.
 fn about(axis: DVec3, degrees: f64) -> DMat4 {
     let (sin, cos) = sin_cos_f64((degrees % 360.0).to_radians());
     let column = |e: DVec3| e * cos + axis * (axis.dot(e) * (1.0 - cos)) + axis.cross(e) * sin;

@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// A colour or a spectrum as written.
 #[derive(Clone, Debug)]
 pub(super) enum GivenColour {
-    /// The same at all wavelengths.
+    /// One value at all wavelengths.
     Even(f32),
     Rgb(Rgb),
     /// By wavelength.

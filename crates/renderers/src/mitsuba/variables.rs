@@ -11,7 +11,7 @@ const MAX_TEXT: usize = 1 << 16;
 /// The variables so far.
 pub(super) struct Variables {
     values: BTreeMap<String, String>,
-    /// Those that the user gives, and whether the file uses them.
+    /// Variables that the user gives, and whether the file uses them.
     given: BTreeMap<String, bool>,
 }
 

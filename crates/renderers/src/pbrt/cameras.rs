@@ -225,7 +225,7 @@ impl ScreenWindow {
 /// at, which differs from a rotation by less than 10⁻⁶ radians over such an angle.
 const MAX_STEP: f64 = 2.0;
 
-/// Where a moving camera is, at as many times as its rotation needs: its position along a line, its axes at constant angular
+/// Placements of a moving camera, at as many times as its rotation needs: its position along a line, its axes at constant angular
 /// speed, as pbrt interpolates them.
 fn between(times: [f64; 2], to_world: &Matrices, entity: &Entity) -> Result<Vec<(f32, DMat4)>, FormatError> {
     let ends = || Ok([0, 1].map(|i| (times[i] as f32, to_world[i])).to_vec());

@@ -1,4 +1,4 @@
-//! What the directives of a file say: all that a scene is made of, before names are resolved.
+//! Contents of the directives of a file: all that a scene is made of, before names are resolved.
 
 use super::entity::Entity;
 use super::options::Options;

@@ -1,4 +1,4 @@
-//! What a directive describes.
+//! Entities that directives describe.
 
 use super::parameters::ParameterList;
 use bilux_scene::Span;

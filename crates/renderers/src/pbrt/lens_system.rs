@@ -26,12 +26,12 @@ struct Surface {
     thickness: f64,
     /// The refractive index behind it; none of the aperture.
     index: Option<f64>,
-    /// Its width in millimetres.
+    /// Width in millimetres.
     width: f64,
 }
 
 impl ThinLens {
-    /// That of the lens in `lensfile`, for a film with this diagonal in millimetres and this width over height.
+    /// Thin lens for the one in `lensfile`, for a film with this diagonal in millimetres and this width over height.
     pub(super) fn read(
         list: &ParameterList,
         loader: &mut Loader,
@@ -55,7 +55,7 @@ impl ThinLens {
     }
 }
 
-/// What is known of a lens near its axis.
+/// Properties of a lens near its axis.
 struct System {
     focal_length: f64,
     /// The radius of the entrance pupil.

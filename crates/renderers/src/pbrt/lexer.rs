@@ -25,16 +25,16 @@ pub(super) struct Lexer<'a> {
     bytes: &'a [u8],
     pos: usize,
     places: Places<'a>,
-    /// Where the last list of parameters goes on, in the file that includes this one.
+    /// Rest of the last list of parameters, in the file that includes this one.
     rest: Option<Rest<'a>>,
 }
 
 /// Text of another file at the end of one.
 #[derive(Clone)]
 struct Rest<'a> {
-    /// Where it begins here.
+    /// Place where it begins here.
     begins: usize,
-    /// Where it begins in the other file.
+    /// Place where it begins in the other file.
     offset: usize,
     places: Places<'a>,
 }

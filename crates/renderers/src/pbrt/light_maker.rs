@@ -1,4 +1,4 @@
-//! What lights and surfaces that emit share.
+//! Maker of lights and of the emission of surfaces, with what they share.
 
 use super::entity::Entity;
 use super::loader::SpectrumType;

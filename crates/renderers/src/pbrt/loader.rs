@@ -1,4 +1,4 @@
-//! What parameters refer to: colours, spectra and pictures, many of them in files of their own.
+//! Values that parameters refer to: colours, spectra and pictures, many of them in files of their own.
 
 use super::lexer::number_of;
 use super::parameters::{Kind, Parameter, ParameterList, Values};

@@ -18,7 +18,7 @@ pub(super) struct Options {
     pub(super) times: [f64; 2],
 }
 
-/// What the options say of the picture.
+/// Settings of the picture, as the options state them.
 pub(super) struct Settings {
     pub(super) parameters: Parameters,
     /// The times at which the shutter opens and closes, in seconds.

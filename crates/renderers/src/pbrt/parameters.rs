@@ -97,7 +97,7 @@ impl Parameter {
         FormatError::malformed(message, self.at.clone())
     }
 
-    /// Its numbers, if it holds numbers.
+    /// Numbers of the parameter, if it holds numbers.
     pub(super) fn numbers(&self) -> Option<&[f32]> {
         match &self.values {
             Values::Numbers(list) => Some(list),
@@ -105,7 +105,7 @@ impl Parameter {
         }
     }
 
-    /// Its string, if it holds a single one.
+    /// String of the parameter, if it holds a single one.
     pub(super) fn text(&self) -> Option<&str> {
         match &self.values {
             Values::Texts(list) => match list.as_slice() {

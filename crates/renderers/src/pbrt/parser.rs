@@ -1,4 +1,4 @@
-//! What the directives of a file change.
+//! State that the directives of a file change.
 
 use super::document::{Document, Piece};
 use super::loader::Loader;
@@ -8,11 +8,11 @@ use bilux_import::input::includes::Includes;
 use bilux_scene::Span;
 use std::collections::HashMap;
 
-/// How far a file has been read.
+/// State of a file that is being read.
 pub(super) struct Parser<'o, 'r> {
-    /// What it has said so far.
+    /// Contents of the file so far.
     pub(super) document: Document,
-    /// What holds for the next directives.
+    /// Graphics state that holds for the next directives.
     pub(super) graphics: Graphics,
     pub(super) shapes: ShapeCache,
     pub(super) loader: Loader<'o, 'r>,

@@ -24,7 +24,7 @@ pub(super) struct Placer<'d, 'o, 'r> {
     fronted: HashMap<*const Mesh, [Arc<Mesh>; 2]>,
     /// The objects of the scene.
     pub(super) objects: Vec<Object>,
-    /// Its lights, first those that are no shapes.
+    /// Lights of the scene, first those that are no shapes.
     pub(super) lights: Vec<Spec>,
 }
 

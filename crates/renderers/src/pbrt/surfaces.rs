@@ -27,7 +27,7 @@ pub(super) struct Surfaces<'d, 'o, 'r> {
     glows: HashMap<usize, AreaEmission>,
 }
 
-/// What a shape emits.
+/// Emission of a shape.
 pub(super) struct Glow {
     pub(super) radiance: TextureOrValue,
     pub(super) both_sides: bool,

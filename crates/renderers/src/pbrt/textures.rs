@@ -18,7 +18,7 @@ use std::sync::Arc;
 /// Evaluates parameters that may be textures, and puts those that are used into the scene.
 pub(super) struct Textures<'d, 'o, 'r> {
     defined: &'d NamedTextures,
-    /// Those evaluated so far.
+    /// Textures evaluated so far.
     made: [HashMap<String, MadeTexture>; 2],
     /// The number of textures around the one that is being evaluated.
     depth: usize,

@@ -112,7 +112,7 @@ impl Composer<'_, '_> {
         names.iter().map(|name| self.files.find(name, folder, at, self.world.reading)).collect()
     }
 
-    /// What a generator writes; `None` for any other program.
+    /// Statements that a generator writes; `None` for any other program, and for a form of output that is not read here.
     fn generated(
         &mut self,
         program: &str,

@@ -12,9 +12,9 @@ pub(super) struct DistantSource {
     pub(super) name: Rc<str>,
     /// Towards its middle, with z up.
     pub(super) direction: DVec3,
-    /// Its angular diameter.
+    /// Angular diameter.
     pub(super) degrees: f64,
-    /// Its radiance in Radiance's units; with a sky a factor on that.
+    /// Radiance in Radiance's units; with a sky, a factor on that of the sky.
     pub(super) colour: [f64; 3],
     pub(super) sky: Option<PlacedSky>,
     pub(super) at: Span,
@@ -27,7 +27,7 @@ impl DistantSource {
         self.colour.map(|c| c * PI * sin * sin)
     }
 
-    /// What it is below the horizon.
+    /// Radiance below the horizon.
     pub(super) fn ground(&self) -> [f64; 3] {
         let factor = self.sky.as_ref().map_or(1.0, |placed| placed.sky.ground);
         self.colour.map(|c| c * factor)

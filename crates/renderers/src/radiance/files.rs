@@ -11,20 +11,20 @@ use std::rc::Rc;
 /// Longer chains of files are refused, since each level uses some of the stack.
 const MAX_CHAIN: usize = 32;
 
-/// What counts as held for a statement that stands somewhere once more, and for a command: a bound on how often that is.
+/// Bytes that count as held for a statement that stands somewhere once more, and for a command: a bound on how often that is.
 const VISIT: u64 = 256;
 const COMMAND: u64 = 1 << 15;
 
 /// The files that are read.
 pub(super) struct Files {
     known: HashMap<PathBuf, Rc<Text>>,
-    /// The same by the folder and the name in it.
+    /// Files by the folder and the name in it.
     named: HashMap<(Option<PathBuf>, Rc<str>), Rc<Text>>,
     /// The chain of files from the first to the current one.
     open: Vec<PathBuf>,
     /// The folder of the first file.
     root: Option<PathBuf>,
-    /// What counts as held for all visits.
+    /// Bytes that count as held for all visits.
     visited: u64,
 }
 

@@ -9,7 +9,7 @@ use bilux_math::DVec3;
 use bilux_scene::Span;
 use std::rc::Rc;
 
-/// What to do with the edges.
+/// Form of the edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Edges {
     Sharp,
@@ -28,7 +28,7 @@ struct Cuboid<'a> {
     at: &'a Span,
 }
 
-/// What it writes; `None` if it writes something that is not read here.
+/// Statements that `genbox` writes; `None` if it writes something that is not read here.
 pub(super) fn generate(
     words: &[Rc<str>],
     at: &Span,

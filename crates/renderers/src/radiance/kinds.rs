@@ -1,6 +1,6 @@
 //! The types of Radiance's primitives. [Ward 1994]
 
-/// What a primitive is.
+/// Kind of a primitive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Kind {
     Polygon,
@@ -50,7 +50,7 @@ pub(super) enum Finish {
     Glass,
     /// A reflectance with a function or data for its gloss.
     Function,
-    /// The same with a transmittance.
+    /// A reflectance and a transmittance with a function or data for the gloss.
     TransFunction,
     Brtd,
     Bsdf,

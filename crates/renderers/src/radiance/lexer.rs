@@ -71,7 +71,7 @@ impl<'a> Lexer<'a> {
         Some(Word { text, at })
     }
 
-    /// The same after comments.
+    /// Next word after comments, as [`Lexer::word`] gives it.
     pub(super) fn word_after_comments(&mut self) -> Option<Word<'a>> {
         self.peek()?;
         self.word()

@@ -1,4 +1,4 @@
-//! What surfaces look like, as far as it is known.
+//! Looks of surfaces, as far as they are known.
 
 use super::sky_model::Sky;
 use bilux_math::DVec3;
@@ -6,10 +6,10 @@ use bilux_scene::Span;
 use std::collections::HashMap;
 use std::rc::Rc;
 
-/// What a surface looks like.
+/// Look of a surface.
 #[derive(Clone, Debug)]
 pub(super) enum Look {
-    /// It is not there.
+    /// Surface that is not there.
     Nothing,
     /// A material, by its index.
     Material(usize),
@@ -24,7 +24,7 @@ pub(super) struct PlacedSky {
     pub(super) sun: DVec3,
 }
 
-/// What is known of looks so far.
+/// Looks that are known so far.
 #[derive(Default)]
 pub(super) struct Looks {
     pub(super) known: HashMap<usize, Look>,
@@ -37,10 +37,10 @@ pub(super) struct Looks {
 /// A material that emits light.
 #[derive(Clone, Debug)]
 pub(super) struct Lamp {
-    /// Its modifier, by which it is the same again.
+    /// Index of its modifier, by which it is the same again.
     pub(super) index: usize,
     pub(super) name: Rc<str>,
-    /// Its radiance in Radiance's units.
+    /// Radiance in Radiance's units.
     pub(super) colour: [f64; 3],
     pub(super) emission: Emission,
     /// A sky, whose brightness is a factor on it.
@@ -51,10 +51,10 @@ pub(super) struct Lamp {
 /// The directions that light leaves in, and what eyes see.
 #[derive(Clone, Debug)]
 pub(super) enum Emission {
-    /// The same in all.
+    /// Equal light in all directions.
     Even,
     /// Within a cone with this whole angle around a direction.
     Spot { degrees: f64, aim: DVec3 },
-    /// The same in all directions; eyes see another material.
+    /// Equal light in all directions; eyes see another material.
     Illum(Box<Look>),
 }

@@ -1,4 +1,4 @@
-//! What surfaces look like: what their modifiers come to.
+//! Looks of surfaces that follow from their modifiers.
 
 use super::kinds::{Finish, Kind};
 use super::look::{Emission, Lamp, Look, PlacedSky};
@@ -14,7 +14,7 @@ use std::rc::Rc;
 const MAX_CHAIN: usize = 1000;
 const MAX_DEPTH: usize = 32;
 
-/// What a reference comes to.
+/// Look that a reference comes to.
 pub(super) fn look(world: &mut World, reference: Reference, at: &Span) -> Result<Look, FormatError> {
     resolved(world, reference, at, 0)
 }

@@ -1,4 +1,4 @@
-//! What modifies surfaces: materials, and what modifies those.
+//! Modifiers of surfaces: materials, and what modifies those.
 
 use super::kinds::Kind;
 use super::place::Place;
@@ -11,7 +11,7 @@ use bilux_scene::error::nearest_name;
 use std::collections::HashMap;
 use std::rc::Rc;
 
-/// What a name stands for where it is used.
+/// Meaning of a name where it is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Reference {
     /// Nothing.
@@ -25,11 +25,11 @@ pub(super) enum Reference {
 /// A modifier as it is defined in one place.
 pub(super) struct Modifier {
     pub(super) primitive: Rc<Primitive>,
-    /// What modifies it in turn.
+    /// Modifier that modifies this one in turn.
     pub(super) under: Reference,
     /// The parts of a mixture, and the materials that an illum or a mirror has for eyes.
     pub(super) parts: Vec<Reference>,
-    /// Where it is defined, if that changes what it means.
+    /// Matrix of the place where it is defined, if that changes what it means.
     pub(super) matrix: DMat4,
     /// The factor on its lengths there.
     pub(super) scale: f64,
@@ -41,11 +41,11 @@ pub(super) struct Modifiers {
     pub(super) list: Vec<Modifier>,
     names: HashMap<Rc<str>, usize>,
     known: HashMap<Key, usize>,
-    /// What is said of names that nothing defines.
+    /// Messages about names that nothing defines.
     unknown: HashMap<Rc<str>, String>,
 }
 
-/// What makes a modifier the same again.
+/// Key by which a modifier is the same again.
 #[derive(PartialEq, Eq, Hash)]
 struct Key {
     primitive: *const Primitive,
@@ -59,7 +59,7 @@ const COMPARED: usize = 100;
 const LISTED: usize = 20;
 
 impl Modifiers {
-    /// What a name stands for now. Says once where there is nothing of this name.
+    /// Meaning of a name now. Says once where there is nothing of this name.
     pub(super) fn named(&mut self, name: &str, of: &Primitive, oddities: &mut Oddities) -> Reference {
         if name == "void" {
             return Reference::Void;
@@ -115,7 +115,7 @@ impl Modifiers {
         Ok(())
     }
 
-    /// The same modifier under another name, and perhaps with another modifier of its own.
+    /// Index of an alias: the same modifier under another name, and perhaps with another modifier of its own.
     fn alias(
         &mut self,
         alias: &Rc<Primitive>,
@@ -134,7 +134,7 @@ impl Modifiers {
         self.interned(&primitive, under, parts, matrix, budget).map(Some)
     }
 
-    /// What the words of a mixture, an illum or a mirror name.
+    /// References that the words of a mixture, an illum or a mirror name.
     fn parts(&mut self, primitive: &Primitive, oddities: &mut Oddities) -> Vec<Reference> {
         use super::kinds::Finish::{Illum, Mirror};
         let count = match primitive.kind {

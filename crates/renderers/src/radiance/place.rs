@@ -1,16 +1,16 @@
-//! Where statements stand: what the commands around them do to them.
+//! Places of statements, after what the commands around them do to them.
 
 use super::xform::{Xform, joined};
 use bilux_math::DMat4;
 use std::rc::Rc;
 
-/// What applies to all surfaces of a file, in one of its places.
+/// Changes to all surfaces of a file, in one of its places.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Place {
     pub(super) matrix: DMat4,
-    /// What modifies all surfaces, in place of their own modifiers.
+    /// Modifier of all surfaces, in place of their own modifiers.
     pub(super) modifier: Option<Rc<str>>,
-    /// What precedes the names of surfaces.
+    /// Prefix of the names of surfaces.
     pub(super) prefix: Option<Rc<str>>,
     /// Whether surfaces are turned inside out.
     pub(super) inverts: bool,

@@ -18,12 +18,12 @@ pub(super) struct Polygons {
     triangulator: Triangulator,
 }
 
-/// What polygons of one mesh have in common.
+/// Properties that polygons of one mesh have in common.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Key {
     /// The index of their material.
     pub(super) material: usize,
-    /// What precedes their names: the copies of an array are objects of their own.
+    /// Prefix of their names: the copies of an array are objects of their own.
     pub(super) prefix: Option<Rc<str>>,
     /// Whether the camera does not see them.
     pub(super) is_hidden: bool,
@@ -37,7 +37,7 @@ struct Group {
     at: Span,
 }
 
-/// What a vertex takes with its place in the table.
+/// Bytes of a vertex with its place in the table.
 const VERTEX: u64 = 64;
 
 impl Polygons {

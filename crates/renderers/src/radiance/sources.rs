@@ -50,9 +50,9 @@ pub(super) fn add(
 #[derive(Default)]
 struct Sorted {
     suns: Vec<DistantSource>,
-    /// What fills the upper and the lower half.
+    /// Sources that fill the upper and the lower half.
     halves: [Option<Rc<DistantSource>>; 2],
-    /// What is neither.
+    /// Sources that are neither suns nor halves.
     others: Vec<Rc<DistantSource>>,
 }
 

@@ -26,10 +26,10 @@ pub(super) struct Primitive {
     /// The name of what modifies it.
     pub(super) modifier: Rc<str>,
     pub(super) kind: Kind,
-    /// Its type in the file.
+    /// Type in the file.
     pub(super) word: &'static str,
     pub(super) name: Rc<str>,
-    /// Its words; of an alias the name that it stands for.
+    /// Words of the primitive; of an alias the name that it stands for.
     pub(super) strings: Vec<Rc<str>>,
     pub(super) reals: Vec<f64>,
     /// The brightness of a sky, for a pattern as generators of skies write it.
@@ -114,7 +114,7 @@ fn primitive(lexer: &mut Lexer, budget: &mut Budget, file: &Arc<str>) -> Result<
     Ok(made)
 }
 
-/// How many words, integers or numbers come next; no more than the file can hold.
+/// Number of words, integers or numbers that come next; no more than the file can hold.
 fn count(lexer: &mut Lexer, of: &Primitive, what: &str) -> Result<usize, FormatError> {
     let wanted = format!("the number of {what} of the {} '{}'", of.word, of.name);
     let word = lexer.word_after_comments().ok_or_else(|| cut_off(lexer, &wanted))?;

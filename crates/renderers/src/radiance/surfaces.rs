@@ -18,7 +18,7 @@ use std::f64::consts::PI;
 
 /// A surface with its points as they stand in the scene, with z still up.
 enum Shape {
-    /// Its front is where the corners run counter-clockwise.
+    /// Corners of a polygon, whose front is where they run counter-clockwise.
     Polygon(Vec<DVec3>),
     /// A form with the point that its origin comes to, what its axis comes to, and its radius.
     Round { form: Form, inwards: bool, origin: DVec3, along: DVec3, radius: f64 },

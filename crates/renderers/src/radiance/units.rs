@@ -9,7 +9,7 @@ pub(super) const EFFICACY: f64 = 179.0;
 /// The greatest radiance that lights have here.
 const MOST: f32 = 1e12;
 
-/// What an amount of light in Radiance is here, so that its lumens stay the same: 179 of 1 W there, 683 here.
+/// Light here for an amount of light in Radiance, so that its lumens stay the same: 179 of 1 W there, 683 here.
 pub(super) fn light(colour: [f64; 3]) -> Rgb {
     let factor = EFFICACY / f64::from(LUMENS_PER_WATT);
     let [r, g, b] = colour.map(|c| (c * factor) as f32);

@@ -7,7 +7,7 @@ use bilux_math::DVec3;
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{Span, Spec};
 
-/// What programs start lines of views with.
+/// Words with which programs start lines of views.
 const STARTS: [&str; 4] = ["rvu", "rview", "rpict", "VIEW="];
 
 /// A view, with z up.

@@ -1,4 +1,4 @@
-//! What a scene is made of so far.
+//! Parts of a scene so far.
 
 use super::distant::DistantSource;
 use super::look::Looks;
@@ -80,7 +80,7 @@ pub(super) fn turned(v: DVec3) -> DVec3 {
     DVec3::new(v.x, v.z, -v.y)
 }
 
-/// The same as a direction of 32-bit floats.
+/// Direction of a file with y up, as 32-bit floats.
 pub(super) fn turned_f32(v: DVec3) -> Vec3 {
     turned(v).as_vec3()
 }

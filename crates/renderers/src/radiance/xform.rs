@@ -10,9 +10,9 @@ use std::rc::Rc;
 /// The arguments of `xform`.
 #[derive(Clone, Debug)]
 pub(super) struct Xform {
-    /// What modifies all surfaces, in place of their own modifiers.
+    /// Modifier of all surfaces, in place of their own modifiers.
     pub(super) modifier: Option<Rc<str>>,
-    /// What precedes the names of all surfaces.
+    /// Prefix of the names of all surfaces.
     prefix: Option<Rc<str>>,
     /// Whether surfaces are turned inside out.
     pub(super) inverts: bool,
@@ -25,7 +25,7 @@ pub(super) struct Xform {
 #[derive(Clone, Copy, Debug)]
 struct Group {
     matrix: DMat4,
-    /// How often each copy has it; of an array once more than the copy before.
+    /// Number of times that each copy has the transforms; in an array, once more than the copy before.
     times: u32,
     /// The number of copies, for an array.
     copies: Option<u32>,

@@ -8,7 +8,7 @@ use crate::sampling::task::Context;
 use bilux_math::Vec3;
 use bilux_scene::Surface;
 
-/// Where a subpath comes from, straight through panes if there have been any.
+/// Origin of a subpath that has come straight from there, through panes if there have been any.
 #[derive(Clone, Copy)]
 pub(super) struct BehindPanes {
     /// On a light, or a vertex on a surface.
@@ -34,13 +34,13 @@ impl BehindPanes {
         self.pdf *= survival;
     }
 
-    /// The same beyond a pane.
+    /// This origin, beyond one more pane.
     pub(super) fn beyond(self) -> BehindPanes {
         BehindPanes { panes: self.panes + 1, ..self }
     }
 
-    /// How often a point on a surface, which the light subpath that began so meets under this cosine, samples where it began, for each time that
-    /// it comes there; 0 unless there are panes between.
+    /// Frequency with which a point on a surface samples the start of this light subpath, for each time that the subpath comes
+    /// there, under this cosine; 0 unless there are panes between.
     pub(super) fn sampled_from(&self, start: &Start, context: &Context, p: Vec3, cos: f32) -> f32 {
         if self.panes == 0 {
             return 0.0;
@@ -52,8 +52,8 @@ impl BehindPanes {
         pdf_direct * distance2 / (self.pdf * cos)
     }
 
-    /// How often the vertex samples what this camera subpath sees of a light, at a surface or in this direction, for each time that it does; 0
-    /// unless there are panes between.
+    /// Frequency with which the vertex samples what this camera subpath sees of a light, at a surface or in this direction, for
+    /// each time that the subpath sees it; 0 unless there are panes between.
     pub(super) fn samples(
         &self,
         context: &Context,

@@ -21,7 +21,7 @@ use bilux_scene::{Ray, TransportMode};
 pub struct BothEnds<'a, const N: usize = 1> {
     pub(super) techniques: TechniqueCounts<N>,
     photons: Option<&'a Photons<N>>,
-    /// Its own light subpath is connected with the camera; false where those of the photons replace it.
+    /// Whether the sample's own light subpath is connected with the camera; false where the photons' light subpaths replace it.
     pub(super) splats: bool,
     pub(super) roulette_depth: u32,
 }
@@ -37,7 +37,7 @@ impl<'a, const N: usize> BothEnds<'a, N> {
         BothEnds { techniques: *photons.techniques(), photons: Some(photons), splats, roulette_depth }
     }
 
-    /// The same where its own light subpath is connected with the camera, if the technique counts at all.
+    /// This pair with its own light subpath connected with the camera, if the technique counts at all.
     pub(crate) fn splatting(self) -> BothEnds<'a, N> {
         BothEnds { splats: self.techniques.splats != PerSet::ZERO, ..self }
     }

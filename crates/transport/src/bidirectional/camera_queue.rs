@@ -34,7 +34,7 @@ struct Subpaths<'b, const N: usize, S, T> {
     tallies: &'b mut [T],
 }
 
-/// What a connection brings if its shadow ray hits nothing.
+/// Connection of a sample, for the case that its shadow ray hits nothing.
 struct Unoccluded<const N: usize> {
     sample: u32,
     join: Join<N>,

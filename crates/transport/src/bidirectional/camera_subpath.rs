@@ -1,4 +1,4 @@
-//! What happens to one camera subpath at each event. [`CameraSubpath::follow`] takes one event after the other;
+//! Events of one camera subpath. [`CameraSubpath::follow`] takes one event after the other;
 //! [`super::CameraQueue`] takes each event for many subpaths at a time, and finds the same light, bit for bit.
 
 use super::connect::Connection;
@@ -17,7 +17,7 @@ pub(crate) trait CameraSubpath<const N: usize = 1> {
     /// The subpath leaves the scene.
     fn escape(&self, subpath: &mut Subpath<N>, task: &Task, tally: &mut impl Tally<N>);
 
-    /// It arrives at a vertex, and collects the light that is emitted there; false where it ends.
+    /// The subpath arrives at a vertex, and collects the light that is emitted there; false where it ends.
     fn arrive(
         &self,
         subpath: &mut Subpath<N>,

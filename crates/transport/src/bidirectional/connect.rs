@@ -1,4 +1,4 @@
-//! How subpaths are connected: with the camera, with a point on a light, or with each other.
+//! Connections of subpaths: with the camera, with a point on a light, or with each other.
 
 use super::vertex::Vertex;
 use crate::film::limits::MAX_CONNECTED_ROW;
@@ -18,16 +18,16 @@ pub(crate) struct Connection<const N: usize = 1> {
     pub(crate) segment: Segment,
 }
 
-/// What joins the ends of a connection, if nothing blocks it.
+/// Join of the two ends of a connection, if nothing blocks it.
 pub(crate) struct Join<const N: usize = 1> {
     /// If no panes are on the way.
     pub(crate) technique: Technique,
-    /// What it contributes, but for other techniques and what absorbs on the way.
+    /// Contribution, but for other techniques and what absorbs on the way.
     found: Contribution<N>,
-    /// How often other techniques find the path that come back along the segment to its start, if no medium is on the way.
+    /// Frequency of other techniques that come back along the segment to its start and find the path, if no medium is on the way.
     back: PerSet<N>,
     end: End<N>,
-    /// How often those find it that do not depend on what lies along the segment.
+    /// Frequency of the other techniques that do not depend on what lies along the segment.
     alike: PerSet<N>,
     /// Whether each end is a point of a medium.
     in_medium: [bool; 2],
@@ -35,7 +35,7 @@ pub(crate) struct Join<const N: usize = 1> {
     odds: Rgb,
 }
 
-/// What other techniques do that go on along the segment to its end, if no medium is on the way.
+/// Other techniques that go on along the segment to its end, if no medium is on the way.
 enum End<const N: usize> {
     /// They find the path so often.
     Vertex(PerSet<N>),
@@ -56,7 +56,7 @@ impl<const N: usize> Connection<N> {
 }
 
 impl<const N: usize> Join<N> {
-    /// The same of an equiangular point and a point on its light, where there are `ratio` such points for each event of a walk.
+    /// This join of an equiangular point and a point on its light, where there are `ratio` such points for each event of a walk.
     pub(super) fn equiangular(self, ratio: f32) -> Join<N> {
         Join { found: Contribution { own: PerSet::ONE * ratio, ..self.found }, alike: PerSet::ONE, ..self }
     }

@@ -1,4 +1,4 @@
-//! How rays of camera subpaths are merged with the photon beams that they cross in media.
+//! Merging of rays of camera subpaths with the photon beams that they cross in media.
 
 use super::vertex::count;
 use crate::media::equiangular::{self, Approach, Departure};

@@ -21,7 +21,7 @@ pub(crate) struct EmitterHit {
 }
 
 impl EmitterHit {
-    /// What no other technique finds.
+    /// Hit that no other technique finds.
     fn only(radiance: Rgb, light: Option<usize>) -> EmitterHit {
         EmitterHit { radiance, pdf_direct: 0.0, pdf_emission: 0.0, light }
     }

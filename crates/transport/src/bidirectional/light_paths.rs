@@ -239,7 +239,7 @@ impl<const N: usize> LightPaths<N> {
         self.order[range].iter().map(|&vertex| &self.vertices[vertex as usize])
     }
 
-    /// Those of them that are connected with the camera.
+    /// Vertices of a sample's light subpath that are connected with the camera.
     #[inline]
     pub(super) fn connectible(
         &self,

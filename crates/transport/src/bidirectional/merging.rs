@@ -1,4 +1,4 @@
-//! How a vertex of a camera subpath is merged with the photons around it.
+//! Merging of a vertex of a camera subpath with the photons around it.
 
 use super::vertex::{Vertex, count, kept_share};
 use crate::media::interaction::{Interaction, MediumPoint};
@@ -26,7 +26,7 @@ pub(crate) fn merged<const N: usize>(
     }
 }
 
-/// The same on a surface.
+/// Merges a camera vertex on a surface.
 #[inline]
 fn on_surface<const N: usize>(
     task: &Task,
@@ -61,8 +61,9 @@ fn on_surface<const N: usize>(
     });
 }
 
-/// The same in a dense medium, with the photons in a ball: a light subpath comes to a point as often as it has an event there, so
-/// throughputs of both have scattered there, and one has to take that back. [Křivánek 2014, estimator P-P3D]
+/// Merges a camera vertex in a dense medium with the photons in a ball; true if it has looked for any. A light subpath comes
+/// to a point as often as it has an event there, so throughputs of both have scattered there, and one has to take that back.
+/// [Křivánek 2014, estimator P-P3D]
 ///
 /// Of long walks, few points are merged, and count for more, as light subpaths keep few.
 fn in_medium<const N: usize>(

@@ -8,7 +8,7 @@ pub(crate) struct QueuedSample {
     /// From the camera.
     pub(crate) ray: Ray,
     pub(crate) state: SampleState,
-    /// Its camera subpath is traced.
+    /// Whether its camera subpath is traced.
     pub(crate) is_wanted: bool,
     /// The beams of its light subpath are kept.
     pub(crate) has_beams: bool,

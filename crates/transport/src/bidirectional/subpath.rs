@@ -19,7 +19,7 @@ use bilux_scene::{BsdfSample, Ray, Scene, Surface, TransportMode};
 /// A subpath on its way to the next vertex.
 pub(crate) struct Subpath<'w, const N: usize = 1> {
     pub(crate) walk: Walk,
-    /// What it carries: radiance on a camera subpath, importance on a light subpath.
+    /// Quantity that it carries: radiance on a camera subpath, importance on a light subpath.
     mode: TransportMode,
     pub(crate) partial: Partial<N>,
     /// The density of arriving is over area already: at the first vertex that light from infinity reaches.
@@ -29,7 +29,7 @@ pub(crate) struct Subpath<'w, const N: usize = 1> {
     /// The light that it comes from and how it left.
     start: Option<Start>,
     origin: u16,
-    /// What media on the way to the next vertex emit, over the density of finding it.
+    /// Light that media on the way to the next vertex emit, over the density of finding it.
     glow: Rgb,
     /// The parts of its last ray through media in which rays are merged; none before the ray is followed.
     pub(crate) beams: Vec<Beam<N>>,
@@ -37,14 +37,14 @@ pub(crate) struct Subpath<'w, const N: usize = 1> {
     has_beams: bool,
     /// Whether its rays have [equiangular points](equiangular).
     is_equiangular: bool,
-    /// Its flight along its next ray, if that is known before the ray is traced.
+    /// Flight along the next ray, if that is known before the ray is traced.
     ahead: Option<Flight>,
-    /// It as it was before its last ray, if that has such points.
+    /// State before the last ray, if that ray has equiangular points.
     before: Option<Box<Before<N>>>,
-    /// Its last vertex, if it is a camera subpath, and a light subpath, where equiangular points may be.
+    /// Last vertex, of a camera subpath and of a light subpath, where equiangular points may be.
     approach: Option<Approach>,
     lit: Option<Lit<N>>,
-    /// Where it comes from straight, in a scene with panes.
+    /// Origin that it has come straight from, in a scene with panes.
     straight: Option<BehindPanes>,
     /// The techniques by which its vertices may be found otherwise.
     techniques: &'w TechniqueCounts<N>,
@@ -89,17 +89,17 @@ impl<'w, const N: usize> Subpath<'w, N> {
         }
     }
 
-    /// The same, with [equiangular points](equiangular) on its rays.
+    /// This subpath with [equiangular points](equiangular) on its rays.
     pub(super) fn with_equiangular_points(self) -> Subpath<'w, N> {
         Subpath { is_equiangular: true, ..self }
     }
 
-    /// The same from a light of the scene.
+    /// This subpath, leaving a light of the scene.
     pub(crate) fn leaving(self, start: Start) -> Subpath<'w, N> {
         Subpath { origin: start.cell, start: Some(start), ..self }
     }
 
-    /// The same, and keeps its beams if it `has_beams`.
+    /// This subpath, which keeps its beams if it `has_beams`.
     pub(super) fn keeping_beams(self, has_beams: bool) -> Subpath<'w, N> {
         Subpath { has_beams, ..self }
     }
@@ -110,7 +110,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
         self.start.map(|start| start.light)
     }
 
-    /// Its next ray, as far as it has to be traced: to the event that it [finds ahead](Walk::ahead).
+    /// Next ray, as far as it has to be traced: to the event that the subpath [finds ahead](Walk::ahead).
     #[inline]
     pub(super) fn ray(&mut self, scene: &Scene, sample: &mut SampleState) -> Ray {
         let (ray, ahead) = self.walk.ahead(scene, sample, self.mode);
@@ -147,7 +147,8 @@ impl<'w, const N: usize> Subpath<'w, N> {
         vertex
     }
 
-    /// The same where the first surface along [its ray](Subpath::ray) is known.
+    /// Goes on to the next vertex, where the first surface along [its ray](Subpath::ray) is known; `None` where the ray leaves
+    /// the scene.
     #[inline]
     pub(crate) fn vertex_before(&mut self, first: Option<Surface>, task: &mut Task) -> Option<Vertex<N>> {
         self.before = None;
@@ -293,7 +294,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
         self.walk.survives(roulette_depth, self.full, || u_survival)
     }
 
-    /// Where it comes from straight after this event.
+    /// Origin that the subpath comes straight from after this event.
     fn straight_on(&self, from: &Vertex<N>, sample: &BsdfSample, scene: &Scene) -> Option<BehindPanes> {
         let Vertex { at, wo, .. } = from;
         if sample.is_delta {
@@ -304,7 +305,8 @@ impl<'w, const N: usize> Subpath<'w, N> {
         samples_lights.then(|| BehindPanes::vertex(at.p(), sample.pdf_solid_angle))
     }
 
-    /// How often a vertex samples through panes what it sees of a light, at a surface or where it leaves the scene, for each time that it comes there.
+    /// Frequency with which a vertex samples through panes what the subpath sees of a light, at a surface or where it leaves the
+    /// scene, for each time that it comes there.
     pub(super) fn sampled_through_panes(
         &self,
         context: &Context,
@@ -338,7 +340,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
         alike.arrived(&travelled, task)
     }
 
-    /// How it came to its last vertex, if that may be an equiangular point.
+    /// Approach to the last vertex, if that may be an equiangular point.
     pub(super) fn approach(&self) -> Option<Approach> {
         self.approach
     }

@@ -26,7 +26,7 @@ pub(crate) struct Vertex<const N: usize = 1> {
     pub(crate) partial: Partial<N>,
     /// Scattering events before this vertex.
     pub(crate) depth: u32,
-    /// The same and this one, as far as they limit paths.
+    /// Events up to and including this one, as far as they limit paths.
     pub(super) events: Events,
     /// Whether it is among those that are connected at all.
     pub(super) is_kept: bool,
@@ -42,7 +42,7 @@ pub(crate) struct Vertex<const N: usize = 1> {
     pub(super) ball: Option<Ball>,
     /// The light that its light subpath comes from, if it comes straight from there.
     pub(super) straight_from: Option<usize>,
-    /// How the ray of a camera subpath came here, where [equiangular points](crate::media::equiangular) may be.
+    /// Approach of a camera subpath's ray, where [equiangular points](crate::media::equiangular) may be.
     pub(super) approach: Option<Approach>,
 }
 
@@ -82,14 +82,15 @@ impl<const N: usize> Vertex<N> {
         self.at.is_equiangular().then(|| Lit { light, p: self.at.p(), connected })
     }
 
-    /// How often camera subpaths that come here from this point find it so, over the density with which their walks arrive.
+    /// Frequency with which camera subpaths that come here from this point find this as an equiangular point, over the density
+    /// with which their walks arrive.
     pub(super) fn lit_from(&self, scene: &Scene, from: Vec3) -> PerSet<N> {
         let Some(lit) = self.lit(1.0) else { return PerSet::ZERO };
         let distance = lit.p.distance(from);
         lit.picked(scene, (lit.p - from) / distance, distance)
     }
 
-    /// Where its light subpath began, if this is its first vertex.
+    /// Start of its light subpath, if this is its first vertex.
     pub(super) fn start(&self, scene: &Scene) -> Way {
         let p = self.at.p();
         let is_infinite = |light: usize| scene.lights()[light].light.is_infinite();

@@ -14,7 +14,7 @@ use std::io::{self, Write};
 use std::ops::Range;
 use std::time::Duration;
 
-/// What the bytes begin with, and the version of their form.
+/// First bytes of a checkpoint, with the version of its form.
 const MAGIC: &[u8; 12] = b"bilux pass 1";
 
 /// More passes are never open at a time, nor complete since the schedule has last looked.

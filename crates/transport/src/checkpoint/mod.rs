@@ -1,4 +1,4 @@
-//! Where a render stands, so that another process can go on from there to the same film, bit for bit.
+//! Checkpoints: the state of a render, so that another process can go on from there to the same film, bit for bit.
 //!
 //! A render stops for a checkpoint between the jobs of its threads: each job, some samples of one tile, is then complete or
 //! not begun. So a checkpoint needs the sums of the film, which jobs are complete, and what is kept from one pass to the next:
@@ -45,7 +45,7 @@ pub struct Unobserved;
 
 impl Observer for Unobserved {}
 
-/// Where a render stands: what a checkpoint is written from ([`Standing::write`]).
+/// State of a render, from which a checkpoint is written ([`Standing::write`]).
 pub struct Standing<'a> {
     pub(crate) film: &'a Film,
     /// With an interval: the samples before those of the film.
@@ -89,7 +89,7 @@ pub(crate) struct OpenPass {
     pub(crate) samples: Range<u32>,
     /// Which tiles are done.
     pub(crate) done: Vec<bool>,
-    /// What their light subpaths have left, which the film does not have yet.
+    /// Splats of their light subpaths that the film does not have yet.
     pub(crate) splats: Option<Iterations>,
 }
 

@@ -6,7 +6,7 @@ use bilux_math::transcendental::powf;
 use bilux_math::{Rgb, Vec2, Vec3, frame::reflect};
 use bilux_scene::{ClassicLight, ClassicMaterial, Surface};
 
-/// How Equation 1 is interpreted.
+/// Interpretation of Equation 1.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LocalRules {
     pub(crate) specular: Specular,
@@ -25,7 +25,7 @@ pub(crate) enum Specular {
     Reflect,
 }
 
-/// What a shadow removes.
+/// Light that a shadow removes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum ShadowRule {
     /// Each light that is blocked.

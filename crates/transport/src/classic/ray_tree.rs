@@ -14,7 +14,7 @@ use bilux_scene::bsdf::{fresnel_dielectric, refract, schlick};
 use bilux_scene::media::beer;
 use bilux_scene::{ClassicMaterial, Ray, Surface};
 
-/// How Equation 2 is interpreted.
+/// Interpretation of Equation 2.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RayTree {
     pub(crate) local: LocalRules,

@@ -5,12 +5,12 @@ use bilux_math::{Rgb, Vec3};
 use bilux_scene::media::beer;
 use bilux_scene::{ClassicLight, Ray, Surface};
 
-/// What an object between a light and a surface does.
+/// Effect of an object between a light and a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Shadows {
     /// Nothing: every light shines on all surfaces that face it.
     Off,
-    /// It blocks the light, even if it is glass, as in Whitted's and the paper's pictures.
+    /// The object blocks the light, even if it is glass, as in Whitted's and the paper's pictures.
     Opaque,
     /// Glass lets the light straight through, and tints it.
     Tinted,
@@ -34,7 +34,7 @@ impl Shadows {
     }
 }
 
-/// What is left of light along a ray: glass tints it, and everything else blocks it except the surfaces of lights.
+/// Fraction of light that is left along a ray: glass tints it, and everything else blocks it except the surfaces of lights.
 fn through_glass(task: &mut Task, mut ray: Ray) -> Rgb {
     let scene = task.context.scene;
     let direction = Vec3::from(ray.direction);

@@ -24,7 +24,7 @@ use std::f64::consts::PI;
 pub struct PartOfSky {
     /// The coefficient.
     pub mean: f32,
-    /// Its standard error.
+    /// Standard error of the coefficient.
     pub error: f32,
 }
 
@@ -40,7 +40,7 @@ pub struct DaylightCoefficients {
 /// Edges of a path from the light to the point, and on from the paper there.
 const STRAIGHT: u32 = 2;
 
-/// What a point has received, by patches.
+/// Light that a point has received, by patches.
 struct Sums {
     /// Of each replicate, patch by patch: all light, and what does not come straight.
     replicates: Vec<[f64; 2]>,
@@ -147,7 +147,7 @@ impl Sums {
     }
 }
 
-/// What a sample has found of the light of a patch of radiance 1.
+/// Light of a patch of radiance 1 that a sample has found.
 fn part_of_sky(scene: &Scene, found: &FoundLight) -> f32 {
     let towards = found.towards.normalize_or_zero();
     let shining = found.light.map_or(Rgb::BLACK, |index| scene.lights()[index].light.le(towards));

@@ -19,8 +19,8 @@ const MOST: u32 = 64;
 /// direction.
 const SAME: f32 = 1.0 - 1.08e-5;
 
-/// How much each point receives of the light of a sun in each direction: its irradiance over that of a surface which faces the
-/// sun, in front of everything. One row of directions after the other. `None` when it was cancelled.
+/// Irradiance of each point from a sun in each direction, over that of a surface which faces the sun, in front of everything. One
+/// row of directions after the other. `None` when it was cancelled.
 ///
 /// # Errors
 /// When there is not enough memory.
@@ -101,7 +101,7 @@ impl Straight {
         Rgb::BLACK
     }
 
-    /// What is left where a ray leaves the scene, if it is still in the direction from which the light comes.
+    /// Fraction of light that is left where a ray leaves the scene, if it is still in the direction from which the light comes.
     fn seen(&self, passed: Rgb, ray: &Ray, direction: Vec3) -> Rgb {
         if self.is_same(Vec3::from(ray.direction), direction) { passed } else { Rgb::BLACK }
     }

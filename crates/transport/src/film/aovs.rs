@@ -14,7 +14,7 @@ pub enum Aov {
     Albedo,
     /// Shading normals in world space.
     Normal,
-    /// The same in the space of the camera.
+    /// Shading normals in the space of the camera.
     CameraNormal,
     /// Distances along rays.
     Depth,
@@ -46,9 +46,9 @@ pub enum Aov {
     Occluded,
     /// [`crate::mattes()`] of objects.
     CryptoObject,
-    /// The same of materials.
+    /// [`crate::mattes()`] of materials.
     CryptoMaterial,
-    /// The same of instances.
+    /// [`crate::mattes()`] of instances.
     CryptoInstance,
     /// [`crate::LightParts::by_events`]: light that scatters at most once.
     Direct,

@@ -12,7 +12,7 @@ use bilux_math::Rgb;
 use bilux_pictures::Picture;
 use std::ops::Range;
 
-/// How much of its weight a batch loses with each batch after it. Later batches are larger, so that their means show more of
+/// Factor on the weight of a batch for each batch after it. Later batches are larger, so that their means show more of
 /// what stratification gains.
 const DECAY: f32 = 0.7;
 
@@ -40,7 +40,7 @@ struct Layer {
 /// Samples in the mean of each pixel.
 #[derive(Clone, Debug, PartialEq)]
 enum Counts {
-    /// The same for every pixel, as long as no sample is bad.
+    /// One number for every pixel, as long as no sample is bad.
     Same(u32),
     Each(Vec<u32>),
 }
@@ -277,7 +277,7 @@ mod tests {
         assert_eq!(batches.variance(0..1), None);
     }
 
-    /// What a picture of 1920 × 1080 takes while it is rendered hangs on this.
+    /// The memory of a picture of 1920 × 1080 while it is rendered depends on this.
     #[test]
     fn only_what_is_needed_is_stored() {
         let mut film = Film::new(8, 8, 20).unwrap();

@@ -1,4 +1,4 @@
-//! What can go wrong between a scene and its picture.
+//! Errors between a scene and its picture.
 
 use crate::film::window::Window;
 use bilux_pictures::PictureError;
@@ -76,7 +76,7 @@ pub enum FilmError {
     /// The picture is not a partial film.
     #[error("this is not a partial render: {what}; make one with --samples or --crop, written to an .exr")]
     NotAFilm {
-        /// What is missing or wrong.
+        /// Fault: something missing or wrong.
         what: String,
     },
     /// A picture could not be made.
@@ -122,7 +122,7 @@ pub enum RenderError {
     /// A checkpoint was made by a render that did not need something.
     #[error("the checkpoint does not hold {what}: render as before, or begin anew")]
     CheckpointLacks {
-        /// What is missing.
+        /// Missing part.
         what: &'static str,
     },
     /// A checkpoint has more samples than are asked for.
@@ -137,7 +137,7 @@ pub enum RenderError {
     /// A checkpoint belongs to another picture.
     #[error("the checkpoint is that of another picture: {what}")]
     OtherCheckpoint {
-        /// How it differs.
+        /// Difference between the two pictures.
         what: String,
     },
     /// The film cannot be made.

@@ -14,9 +14,9 @@ use std::f64::consts::PI;
 pub struct FilterEntry {
     /// Name, summary, source.
     pub entry: Entry,
-    /// Its extent from the centre, in pixels.
+    /// Extent from the centre, in pixels.
     pub radius: f64,
-    /// Its height, at any scale, at a distance from the centre as a fraction of the radius; not negative.
+    /// Height, at any scale, at a distance from the centre as a fraction of the radius; not negative.
     pub shape: fn(f64) -> f64,
 }
 
@@ -97,7 +97,7 @@ impl Filter {
         }
     }
 
-    /// Its name in [`FILTERS`].
+    /// Name in [`FILTERS`].
     pub fn name(&self) -> &'static str {
         self.name
     }
@@ -108,7 +108,7 @@ impl Filter {
         Vec2::new(self.sample_axis(u.x), self.sample_axis(u.y))
     }
 
-    /// Its extent from the centre on each axis, in pixels.
+    /// Extent from the centre on each axis, in pixels.
     pub fn radius(&self) -> f32 {
         self.quantiles[PIECES]
     }

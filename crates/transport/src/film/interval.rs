@@ -122,12 +122,13 @@ impl Interval {
         self.estimate(block, |light| f64::from(Rgb::from_array(light).luminance()))
     }
 
-    /// The same for red, green or blue: `channel` 0, 1 or 2.
+    /// Mean red, green or blue of a block, and its interval: `channel` 0, 1 or 2.
     pub fn channel(&self, block: &Window, channel: usize) -> Estimate {
         self.estimate(block, |light| f64::from(light[channel]))
     }
 
-    /// Where replicates have different numbers of samples n, the variance of a mean is assumed to be σ²/n.
+    /// Mean value of a block, and its interval. Where replicates have different numbers of samples n, the variance of a mean is
+    /// assumed to be σ²/n.
     fn estimate(&self, block: &Window, value: impl Fn([f32; 3]) -> f64) -> Estimate {
         let block = block.intersection(&self.window);
         let mut means = [0.0; COUNT];

@@ -11,7 +11,7 @@ pub const MAX_MEDIUM_EVENTS: u32 = 1 << 16;
 /// thousands: whatever joins them finds hardly more than walks find by themselves, and takes the square of the time.
 pub(crate) const MAX_CONNECTED_ROW: u32 = if cfg!(test) { 3 } else { 16 };
 
-/// What limits a path: its events on surfaces and in fog, and those in skin, milk and the like since the last surface.
+/// Events that limit a path: those on surfaces and in fog, and those in skin, milk and the like since the last surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Events {
     pub(crate) counted: u32,

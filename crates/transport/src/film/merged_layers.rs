@@ -6,7 +6,7 @@ use crate::film::error::FilmError;
 use bilux_pictures::Picture;
 use std::collections::BTreeMap;
 
-/// How much of a pixel is not background.
+/// Fraction of a pixel that is not background.
 const COVERAGE: &str = "A";
 /// The number of samples of each pixel, which are added.
 const SAMPLES: &str = "samples.count";
@@ -115,7 +115,7 @@ fn is_even(name: &str) -> bool {
     name == COVERAGE || Aov::ALL_LAYERS.iter().filter(is_even).any(is_of)
 }
 
-/// Where the pixels of a film's window lie in the rows of the whole film.
+/// Places of the pixels of a film's window in the rows of the whole film.
 fn places(film: &Film) -> impl Iterator<Item = usize> {
     let (window, width) = (film.window(), film.width() as usize);
     (0..window.pixels()).map(move |i| {

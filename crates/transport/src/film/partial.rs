@@ -21,7 +21,7 @@ const SUMS: [[&str; 2]; 3] =
 
 const SAMPLES: &str = "samples";
 
-/// The same for splats, where there are any.
+/// Names of the same planes for splats, where there are any.
 const SPLATS: [[&str; 2]; 3] =
     [["splats.R.low", "splats.R.high"], ["splats.G.low", "splats.G.high"], ["splats.B.low", "splats.B.high"]];
 

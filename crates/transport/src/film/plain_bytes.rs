@@ -7,7 +7,7 @@ use crate::film::partial::{coverage_of, coverage_text, not_a_film};
 use crate::film::window::Window;
 use crate::film::{Film, zeroed};
 
-/// What the bytes begin with, and the version of their form.
+/// First bytes of a film, with the version of their form.
 const MAGIC: &[u8; 12] = b"bilux film 1";
 
 impl Film {

@@ -137,7 +137,7 @@ impl Coverage {
         }
     }
 
-    /// What it lacks of these samples of a window.
+    /// Part that this coverage lacks of these samples of a window.
     pub fn missing(&self, window: Window, samples: Range<u32>) -> Coverage {
         let mut left = vec![(window, samples)];
         for held in &self.pieces {

@@ -49,7 +49,7 @@ impl LightSubpaths for Bdpt {
     }
 }
 
-/// What a camera subpath finds without a light subpath, weighted as if there were some.
+/// Light that a camera subpath finds without a light subpath, weighted as if there were some.
 pub(super) fn of_camera_path(ray: &Ray, task: &mut Task, both_ends: &BothEnds) -> Rgb {
     let mut sum = PixelSum::default();
     both_ends.follow(ray, &[], task, &mut sum);

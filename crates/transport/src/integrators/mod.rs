@@ -1,4 +1,4 @@
-//! How the light along a camera ray is estimated. One integrator per file; the table is [`INTEGRATORS`].
+//! Integrators, which estimate the light along a camera ray. One integrator per file; the table is [`INTEGRATORS`].
 
 mod auto;
 mod bdpt;

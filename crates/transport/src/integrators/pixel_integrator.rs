@@ -1,4 +1,4 @@
-//! What an integrator has to answer; the integrators are in [`crate::integrators`].
+//! Traits of integrators; the integrators are in [`crate::integrators`].
 
 use crate::bidirectional::{BothEnds, BothEndsSamples};
 use crate::light::choice::LightChoice;
@@ -23,7 +23,7 @@ pub trait PixelIntegrator: Send + Sync + 'static {
     /// from the camera.
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb;
 
-    /// How far samples spread over pixel, lens and shutter.
+    /// Spread of samples over pixel, lens and shutter.
     fn camera_spread(&self) -> CameraSpread {
         CameraSpread::FULL
     }
@@ -48,12 +48,12 @@ pub trait PixelIntegrator: Send + Sync + 'static {
         false
     }
 
-    /// Its subpaths from the lights, if it traces any.
+    /// Subpaths from the lights, if it traces any.
     fn light_subpaths(&self) -> Option<&dyn LightSubpaths> {
         None
     }
 
-    /// How it chooses another integrator, if it does.
+    /// Chooser of another integrator, if it is one.
     fn chooser(&self) -> Option<&dyn Chooser> {
         None
     }
@@ -93,7 +93,7 @@ pub trait LightSubpaths: PixelIntegrator {
         None
     }
 
-    /// How camera subpaths are merged with photons. Each sample of all pixels is then an iteration, which begins
+    /// Merging of camera subpaths with photons, if there is any. Each sample of all pixels is then an iteration, which begins
     /// with the photons' light subpaths ([`crate::sampling::task::Context::photons`]).
     fn merging(&self) -> Option<&Merging> {
         None
@@ -111,7 +111,7 @@ pub trait Chooser {
     fn plan(&self, scene: &Scene, camera: &dyn Camera, film: &RenderSettings) -> Plan;
 }
 
-/// What follows from the roles of an integrator.
+/// Methods that follow from the roles of an integrator.
 impl dyn PixelIntegrator {
     /// True when its samples can be taken in independent replicates ([`RenderSettings::interval`]).
     pub fn is_random(&self) -> bool {
@@ -157,7 +157,7 @@ impl dyn PixelIntegrator {
         if self.merging().is_some() { rays.merging() } else { rays }
     }
 
-    /// What it chooses for a picture, if it chooses.
+    /// Plan that it chooses for a picture, if it chooses.
     pub(crate) fn plan(&self, scene: &Scene, camera: &dyn Camera, film: &RenderSettings) -> Option<Plan> {
         Some(self.chooser()?.plan(scene, camera, film))
     }

@@ -43,7 +43,8 @@ impl Sppm {
 }
 
 impl PixelIntegrator for Sppm {
-    /// Its photons lie on surfaces and in media that are the same everywhere, and nothing else would find light in the others.
+    /// False if media vary: photons lie on surfaces and in media that are the same everywhere, and nothing else would find light
+    /// in the others.
     fn follows_media(&self, scene: &Scene) -> bool {
         !scene.has_varying_media()
     }

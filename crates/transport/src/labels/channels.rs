@@ -24,7 +24,7 @@ pub(super) struct Label {
     pub(super) occluded: [bool; 2],
 }
 
-/// That of a pixel in which nothing is visible.
+/// Label of a pixel in which nothing is visible.
 impl Default for Label {
     fn default() -> Label {
         Label {

@@ -5,12 +5,12 @@ use crate::sampling::exposure::Exposure;
 use bilux_math::{DVec2, DVec3, Vec2, Vec3};
 use bilux_scene::{Camera, CameraSample, Scene, Tracer};
 
-/// How much nearer than a point, as a part of its distance, something that hides it is at least. A ray to a point hits the
+/// Minimum gap between a point and something that hides it, as a part of the point's distance. A ray to a point hits the
 /// triangles beside it just as well.
 const NEARER: f64 = 1e-4;
 
-/// How often the row is looked up in which a rolling shutter sees a point: what moves over the picture more slowly than its rows
-/// are read comes nearer each time.
+/// Number of look-ups of the row in which a rolling shutter sees a point: each comes nearer, where the point moves over the picture
+/// more slowly than rows are read.
 const ROUNDS: usize = 6;
 
 /// The scene at another time.
@@ -18,7 +18,7 @@ const ROUNDS: usize = 6;
 pub struct Moment<'a> {
     /// The scene, of the same objects, whose meshes may be in another pose; built for this time.
     pub scene: &'a Scene,
-    /// Its camera.
+    /// Camera at that time.
     pub camera: &'a dyn Camera,
     /// The time, in seconds.
     pub time: f32,
@@ -38,9 +38,9 @@ struct Seen {
     time: f32,
 }
 
-/// Where a point is at the other moment.
+/// Motion of a point to the other moment, and whether it is visible there.
 pub(super) struct Followed {
-    /// How far it moves over the picture, in pixels: to the right, and upwards.
+    /// Displacement over the picture, in pixels: to the right, and upwards.
     pub(super) motion: Vec2,
     /// Whether something hides it there, or it is outside of the picture.
     pub(super) is_hidden: bool,

@@ -32,7 +32,7 @@ pub use silhouettes::{Mask, Silhouette, silhouettes};
 pub(crate) use surface::visible_normal;
 use surface::{LabelRays, Labelled};
 
-/// What is wanted.
+/// Labels that are wanted, and what they need.
 #[derive(Clone, Copy, Default)]
 pub struct Wanted<'a> {
     /// The labels; others are passed over.

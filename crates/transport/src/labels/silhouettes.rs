@@ -14,7 +14,7 @@ const COLUMNS: i64 = 128;
 /// Some pixels of a picture with a margin around it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Mask {
-    /// How many pixels, column by column from the upper left corner, are outside and inside of it in turn.
+    /// Run lengths: how many pixels, column by column from the upper left corner, are outside and inside of the mask in turn.
     // As COCO has it. [Lin 2014]
     pub runs: Vec<u32>,
     /// The number of pixels inside.
@@ -24,12 +24,12 @@ pub struct Mask {
     pub bounds: Option<[i64; 4]>,
 }
 
-/// What a camera sees of a group of objects.
+/// Silhouette of a group of objects, as a camera sees it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Silhouette {
     /// All of it, as if nothing else were there.
     pub whole: Mask,
-    /// What is visible in the picture.
+    /// Part that is visible in the picture.
     pub visible: Mask,
 }
 

@@ -8,7 +8,7 @@ use bilux_accel::Hit;
 use bilux_math::{DVec2, Vec2, Vec3};
 use bilux_scene::{Camera, CameraSample, Ray, Scene, Surface, Tracer};
 
-/// What a pixel is labelled with.
+/// Surface that a pixel is labelled with.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Labelled {
     pub(crate) hit: Hit,
@@ -61,7 +61,7 @@ impl LabelRays<'_> {
         self.scene.for_labels(self.camera.ray(&sample))
     }
 
-    /// What labels each pixel of a tile; `None` where nothing is visible.
+    /// Surface that labels each pixel of a tile; `None` where nothing is visible.
     pub(super) fn of_tile<'s>(&self, tile: &Window, tracer: &mut Tracer<'s>) -> Vec<Option<Labelled>> {
         let places = (0..tile.pixels()).map(|i| tile.position(i));
         let rays: Vec<Ray> = places.map(|(x, y)| self.of_pixel(x.into(), y.into())).collect();
@@ -70,7 +70,7 @@ impl LabelRays<'_> {
         rays.iter().zip(hits).map(|(ray, hit)| labelled(tracer, ray, hit?)).collect()
     }
 
-    /// What labels the pixel of one ray.
+    /// Surface that labels the pixel of one ray.
     pub(super) fn first(&self, ray: &Ray, tracer: &mut Tracer) -> Option<Labelled> {
         let hit = tracer.hit(ray)?;
         labelled(tracer, ray, hit)

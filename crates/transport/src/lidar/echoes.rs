@@ -6,7 +6,7 @@ use bilux_math::transcendental::sin_cos_f64;
 use bilux_math::{Frame, Vec3};
 use bilux_scene::{BsdfSample, Ray, Surface, Tracer, TransportMode, Wavelength};
 
-/// What one ray of a pulse brings back from one surface.
+/// Echo of one ray of a pulse from one surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Echo {
     /// Optical length of the way there, in metres.

@@ -1,4 +1,4 @@
-//! What a laser scanner measures: the distance and the strength of the echoes of each pulse.
+//! Measurements of a laser scanner: the distance and the strength of the echoes of each pulse.
 //!
 //! A pulse leaves a point in a narrow cone, followed by some rays. Where a ray meets a surface that scatters, the part that goes back
 //! along the ray is an echo; of mirrors and smooth glass the ray goes on, split, and what it meets there echoes the same way back. The
@@ -17,7 +17,7 @@ pub use parameters::{Keep, LIDAR};
 /// A firing of the laser.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pulse {
-    /// Where it leaves, in metres.
+    /// Origin of the pulse, in metres.
     pub origin: Vec3,
     /// The axis of its cone, a unit vector.
     pub direction: Vec3,
@@ -25,7 +25,7 @@ pub struct Pulse {
     pub time: f32,
 }
 
-/// How echoes are measured.
+/// Settings by which echoes are measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scanner {
     /// The colour channel that stands for the laser's wavelength, 0 to 2.
@@ -57,9 +57,9 @@ pub struct Scanner {
 pub struct Return {
     /// The index of the pulse.
     pub pulse: usize,
-    /// Its number among the returns of the pulse, from 1, by distance.
+    /// Number among the returns of the pulse, from 1, by distance.
     pub number: u32,
-    /// How many there are.
+    /// Number of returns of the pulse, kept or not.
     pub count: u32,
     /// The measured distance in metres: half the optical length of the way there and back, with noise.
     pub range: f64,

@@ -1,4 +1,4 @@
-//! What can be said of a laser scanner.
+//! Parameters of a laser scanner.
 
 use bilux_math::registry::{Entry, Parameter, ParameterKind, choice, integer};
 

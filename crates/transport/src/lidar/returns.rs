@@ -1,4 +1,4 @@
-//! What a scanner takes the echoes of a pulse for.
+//! Returns that a scanner makes of the echoes of a pulse.
 
 use super::echoes::Echo;
 use super::{Keep, Return, Scanner};

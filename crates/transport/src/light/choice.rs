@@ -92,7 +92,7 @@ impl LightChoice {
         LightChoice { cdf: sums(&shares), shares, few, has_beams: false, local: Local::default() }
     }
 
-    /// The same with a tree over lights of these extents and powers.
+    /// This choice with a tree over lights of these extents and powers.
     fn with_tree(mut self, extents: impl Iterator<Item = Option<(LightExtent, f32)>>) -> LightChoice {
         let mut members = Vec::new();
         let mut local = Local { places: vec![u32::MAX; self.shares.len()], ..Local::default() };
@@ -139,19 +139,19 @@ impl LightChoice {
         all.iter().copied().enumerate().chain(one)
     }
 
-    /// How many random numbers and points it takes to sample lights from a point.
+    /// Number of random numbers and points that it takes to sample lights from a point.
     #[inline]
     pub(crate) fn draws(&self) -> u32 {
         1 + self.count() as u32
     }
 
-    /// How many lights are sampled from a point.
+    /// Number of lights that are sampled from a point.
     #[inline]
     pub fn count(&self) -> usize {
         if self.few { self.shares.len() } else { 1 }
     }
 
-    /// What [`LightChoice::sample`] gives for each point with its number, where one light is chosen: faster than one by one.
+    /// Picks for each point with its number the light that [`LightChoice::sample`] gives, where one is chosen: faster than one by one.
     pub(crate) fn pick_each(&self, points: impl Iterator<Item = (Vec3, f32)>, picked: &mut [(usize, f32)]) {
         let local = &self.local;
         let mut walks = Vec::with_capacity(picked.len());
@@ -242,7 +242,7 @@ fn places(scene: &Scene) -> Vec<(Vec3, Vec2)> {
 struct Irradiances<'a> {
     scene: &'a Scene,
     places: Vec<(Vec3, Vec2)>,
-    /// That of one light at each place.
+    /// Irradiance of one light at each place.
     found: Vec<f32>,
 }
 

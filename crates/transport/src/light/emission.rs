@@ -1,4 +1,4 @@
-//! Where light subpaths begin: at a light chosen by its power, along a ray as that light emits it. Most of these rays
+//! Starts of light subpaths: at a light chosen by its power, along a ray as that light emits it. Most of these rays
 //! may go where no camera sees anything of them. Once a guide has found out which of them matter, most light subpaths
 //! begin like those and the rest as before, so that none is left out and none gets too large a weight.
 
@@ -8,7 +8,7 @@ use bilux_math::{Vec2, Vec3};
 use bilux_scene::{EmissionSample, Scene};
 use std::sync::Arc;
 
-/// How light subpaths begin, and with which density.
+/// Sampling of the starts of light subpaths, and their density.
 pub struct Emission {
     /// The probability of each light, by power.
     probabilities: Vec<f32>,
@@ -19,7 +19,7 @@ pub struct Emission {
     pub(crate) names_lights: bool,
 }
 
-/// How often light subpaths are aimed at each cell of each light, in a grid on the unit square of
+/// Probabilities with which light subpaths are aimed at each cell of each light, in a grid on the unit square of
 /// [`bilux_scene::LightTracing::aim`].
 #[derive(Clone, Debug)]
 pub struct Guide {
@@ -43,7 +43,7 @@ pub(crate) struct Start {
     pub(crate) cell: u16,
 }
 
-/// What stands for a light where light is sorted by lights; all lights from the 65535th on are one.
+/// Number that stands for a light where light is sorted by lights; all lights from index 65535 on are one.
 pub(crate) fn light_number(light: usize) -> u16 {
     u16::try_from(light).unwrap_or(NO_LIGHT)
 }
@@ -121,7 +121,7 @@ impl Emission {
         self.pdf_through(cell, scene, light, pdf_start, direction, cos)
     }
 
-    /// The same for a line through this cell of the guide.
+    /// Density of [`Emission::pdf`] for a line through this cell of the guide.
     fn pdf_through(
         &self,
         cell: Option<usize>,
@@ -165,7 +165,7 @@ impl Guide {
         })
     }
 
-    /// How often a light subpath begins in a cell, given how often an unaimed one does.
+    /// Probability that a light subpath begins in a cell, given the probability that an unaimed one does.
     pub(crate) fn probability(&self, cell: usize, unaimed: f64) -> f64 {
         f64::from(self.unaimed) * unaimed + f64::from(1.0 - self.unaimed) * f64::from(self.shares[cell])
     }

@@ -7,7 +7,7 @@ use std::f32::consts::PI;
 pub(crate) struct Ball {
     /// In metres.
     pub(crate) radius: f32,
-    /// That of the part of it that is in the medium, in cubic metres.
+    /// Volume of the part of it that is in the medium, in cubic metres.
     pub(crate) volume: f32,
 }
 
@@ -20,7 +20,7 @@ impl Ball {
         Ball { radius, volume: 4.0 / 3.0 * PI * radius * radius * radius }
     }
 
-    /// The same where the nearest surface is at this distance from its middle: smaller, and without the part beyond the plane there.
+    /// This ball where the nearest surface is at this distance from its middle: smaller, and without the part beyond the plane there.
     pub(crate) fn near(self, clearance: f32) -> Ball {
         let radius = clearance.clamp(SHRUNK * self.radius, self.radius);
         let height = (clearance / radius).min(1.0);

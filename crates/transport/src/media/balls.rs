@@ -10,7 +10,7 @@ use bilux_scene::Scene;
 /// The largest radius of a ball over the mean free path.
 const WIDEST: f32 = 0.5;
 
-/// The same where the boundary is not known: within a radius of it, some light is lost.
+/// Largest radius where the boundary is not known, over the mean free path: within a radius of it, some light is lost.
 const WIDEST_BLIND: f32 = 0.05;
 
 impl Media {

@@ -1,4 +1,4 @@
-//! What lies between two points.
+//! Passages between two points.
 
 use super::Media;
 use super::passage::{Passage, behind, draws_along};
@@ -6,8 +6,8 @@ use bilux_math::Vec3;
 use bilux_scene::{Ray, Scene, Tracer, Wavelength};
 
 impl Media {
-    /// What lies along a ray that begins in these media, is `distance` metres long, and may lead through so many panes; `None` where something
-    /// blocks it.
+    /// Passage along a ray that begins in these media, is `distance` metres long, and may lead through so many panes; `None`
+    /// where something blocks it.
     ///
     /// For light from infinity there is no `distance`: beyond the last surface nothing absorbs. `n` is the [normal](Scene::normal_towards) of the
     /// surface that the ray ends on at parameter 1; zero where there is none. Of media that vary it is an estimate, by random numbers of this seed.
@@ -23,7 +23,7 @@ impl Media {
         tracer.ending_on(ray, n, |tracer| self.passed(tracer, ray, distance, (panes, seed)))
     }
 
-    /// What lies along a ray of this length that no surface is on.
+    /// Passage along a ray of this length that no surface is on.
     #[inline]
     pub(crate) fn unoccluded(&self, scene: &Scene, ray: &Ray, distance: Option<f32>, seed: u64) -> Passage {
         let Some(distance) = distance else { return Passage::CLEAR };

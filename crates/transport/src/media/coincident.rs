@@ -22,7 +22,7 @@ pub(super) struct Coincident {
 }
 
 impl Coincident {
-    /// Those that coincide with the closest surface along a ray; none unless it is that of a medium with a priority.
+    /// Surfaces that coincide with the closest one along a ray; none unless that is the surface of a medium with a priority.
     pub(super) fn with(tracer: &mut Tracer, ray: &Ray, surface: &Surface) -> Coincident {
         let (scene, direction) = (tracer.scene, Vec3::from(ray.direction));
         let is_nested = |object| scene.nested(object).is_some();

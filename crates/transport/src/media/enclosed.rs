@@ -1,4 +1,4 @@
-//! What is known in a medium that nothing leaves unseen, before a ray is traced.
+//! Flights and hidden points in a medium that nothing leaves unseen, known before a ray is traced.
 
 use super::Media;
 use super::nested::NONE;

@@ -32,7 +32,7 @@ pub(crate) struct Equiangular {
 
 /// The part of a ray in a beam. [The angle there is uniform, too.](Equiangular)
 struct InBeam {
-    /// How often points are there.
+    /// Probability of sampling this part, not the whole ray.
     share: f32,
     /// Distances along the ray, in metres.
     ends: [f32; 2],
@@ -110,7 +110,7 @@ pub(crate) struct Departure {
     pub(crate) origin: Vec3,
     /// A unit vector.
     pub(crate) direction: Vec3,
-    /// It comes from a point of a medium.
+    /// Whether it comes from a point of a medium.
     pub(crate) leaves_medium: bool,
 }
 
@@ -120,13 +120,13 @@ pub(crate) struct EquiangularSample {
     /// With which it was chosen.
     pub(crate) probability: f32,
     pub(crate) points: Equiangular,
-    /// Its distance along the ray, in metres.
+    /// Distance along the ray, in metres.
     pub(crate) distance: f32,
     /// The random point that picks the light's sample.
     pub(crate) u_light: Vec2,
 }
 
-/// How a ray of a camera subpath came to a point of fog.
+/// Approach of a camera subpath's ray to a point of fog.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Approach {
     pub(crate) ray: Departure,
@@ -145,7 +145,7 @@ impl Approach {
         point.is_equiangular.then_some(Approach { ray, t: point.t, by_walk })
     }
 
-    /// How many equiangular points of this light are there, for each event of a walk.
+    /// Number of equiangular points of this light there, for each event of a walk.
     #[inline]
     pub(crate) fn ratio(&self, scene: &Scene, light: usize) -> f32 {
         density(scene, light, &self.ray, self.t) / self.by_walk
@@ -157,13 +157,14 @@ impl Approach {
 pub(crate) struct Lit<const N: usize = 1> {
     pub(crate) light: usize,
     pub(crate) p: Vec3,
-    /// How often connections between the two count, in each set, over the density with which the light subpath goes on from here.
+    /// Frequency with which connections between the two count, in each set, over the density with which the light subpath goes on
+    /// from here.
     pub(crate) connected: PerSet<N>,
 }
 
 impl<const N: usize> Lit<N> {
-    /// How often it is the equiangular point of a ray that comes here along this unit vector, from so far away, and is connected with its
-    /// light; over the density with which a light subpath arrives where the ray begins.
+    /// Frequency with which it is the equiangular point of a ray that comes here along this unit vector, from so far away, and is
+    /// connected with its light; over the density with which a light subpath arrives where the ray begins.
     #[inline]
     pub(crate) fn picked(&self, scene: &Scene, along: Vec3, distance: f32) -> PerSet<N> {
         let origin = self.p - along * distance;

@@ -1,4 +1,4 @@
-//! Where a path scatters: on a surface, or at a point of a medium.
+//! Interactions: where a path scatters, on a surface or at a point of a medium.
 //!
 //! A density over solid angle becomes one over the next vertex: per area of a surface, with the cosine there, or per volume of
 //! a medium, without. [Pauly 2000]
@@ -34,11 +34,11 @@ pub(crate) struct MediumPoint {
     /// Time of the ray, in seconds.
     pub(crate) time: f32,
     pub(crate) phase: Phase,
-    /// Its medium is behind a surface, as in skin and milk, and not fog: such events do not count against the depth.
+    /// Whether its medium is behind a surface, as in skin and milk, and not fog: such events do not count against the depth.
     pub(crate) is_inside: bool,
-    /// Its extinction coefficient, per metre, if it is the same everywhere.
+    /// Extinction coefficient of its medium, per metre, if it is the same everywhere.
     pub(crate) even: Option<Rgb>,
-    /// Its medium has [equiangular points](crate::media::equiangular) too.
+    /// Whether its medium has [equiangular points](crate::media::equiangular) too.
     pub(crate) is_equiangular: bool,
 }
 
@@ -52,7 +52,7 @@ impl Interaction {
         }
     }
 
-    /// How the surface scatters, if it is one.
+    /// BSDF of the surface, if it is one.
     #[inline]
     pub(crate) fn bsdf(&self) -> Option<&Bsdf> {
         match self {
@@ -132,8 +132,8 @@ impl Interaction {
         }
     }
 
-    /// How often merging counts this vertex, but for the [sine](Interaction::sine) of the angle at it, in a channel. `ball` is that in which
-    /// it is merged if it is a point of a dense medium.
+    /// Frequency with which merging counts this vertex, but for the [sine](Interaction::sine) of the angle at it, in a channel.
+    /// `ball` is that in which it is merged if it is a point of a dense medium.
     #[inline]
     pub(crate) fn merged<const N: usize>(
         &self,
@@ -151,7 +151,7 @@ impl Interaction {
         }
     }
 
-    /// How light subpaths find light here where they come straight from a light.
+    /// Techniques by which light subpaths find light here where they come straight from a light.
     #[inline]
     pub(crate) fn direct_light<const N: usize>(&self, techniques: &TechniqueCounts<N>) -> DirectLight {
         let is_in_medium = self.is_in_medium();
@@ -159,7 +159,7 @@ impl Interaction {
         DirectLight { splats: merges || (is_in_medium && techniques.splats_cones), merges }
     }
 
-    /// What the lengths of paths that come along `wo` need of it.
+    /// Place of the vertex, for the lengths of paths that come along `wo`.
     pub(crate) fn place(&self, wo: Vec3) -> Place {
         match self {
             Interaction::Surface(surface, bsdf) => {

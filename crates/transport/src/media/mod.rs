@@ -46,7 +46,7 @@ impl Media {
     /// No media.
     pub(crate) const AIR: Media = Media { overlap: Overlap::NOTHING, inside: NONE, channel: 0 };
 
-    /// What the path travels through, as far as it is known.
+    /// Medium that the path travels through, as far as it is known.
     #[inline]
     fn medium<'s>(&self, scene: &'s Scene) -> Medium<'s> {
         match self.inside {
@@ -60,7 +60,7 @@ impl Media {
         (self.inside != NONE).then(|| (self.inside, self.medium(scene).sigma_s))
     }
 
-    /// What lies along a part of a ray, from here up to there in metres, for light that passes.
+    /// Free path along a part of a ray, from here up to there in metres, for light that passes.
     #[inline]
     fn passed_between(
         &self,
@@ -244,7 +244,7 @@ impl Media {
         }
     }
 
-    /// How light scatters, at a wavelength, where a path through these media has arrived; `None` where it escapes.
+    /// Interaction, at a wavelength, where a path through these media has arrived; `None` where it escapes.
     #[inline]
     pub(crate) fn interaction(
         &self,
@@ -267,7 +267,7 @@ impl Media {
         at.surface().map_or(*self, |surface| self.beyond(scene, surface, wo, direction))
     }
 
-    /// The same for a surface.
+    /// The media in which a path continues from a surface where it came along `wo`.
     #[inline]
     pub(crate) fn beyond(&self, scene: &Scene, surface: &Surface, wo: Vec3, direction: Vec3) -> Media {
         let mut media = *self;
@@ -286,7 +286,7 @@ impl Media {
         if tracer.scene.has_nested() { self.arrive_at_all(tracer, ray, surface) } else { surface }
     }
 
-    /// The same for all that coincide with it.
+    /// Arrives, as [`Media::arrive`] does, at all surfaces that coincide with this one.
     fn arrive_at_all(&mut self, tracer: &mut Tracer, ray: &Ray, surface: Surface) -> Surface {
         self.overlap.leave();
         let Coincident { others, t } = Coincident::with(tracer, ray, &surface);

@@ -9,9 +9,9 @@ pub(super) const NONE: u32 = u32::MAX;
 /// Objects that have a priority, as far as a path is inside of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Overlap {
-    /// Those around it.
+    /// Objects around the path.
     around: [u32; MAX_NESTED],
-    /// Those whose surfaces coincide with the one that the path has reached: they are crossed together with it.
+    /// Objects whose surfaces coincide with the one that the path has reached: they are crossed together with it.
     together: [u32; MAX_COINCIDENT],
 }
 

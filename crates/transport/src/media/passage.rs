@@ -1,4 +1,4 @@
-//! What lies along a line through media, and how far a path comes along it.
+//! Passages along a line through media, and how far a path comes along it.
 
 use crate::media::interaction::MediumPoint;
 use bilux_math::Rgb;
@@ -13,7 +13,7 @@ pub(crate) struct Passage {
     pub(crate) transmittance: Rgb,
     /// The probability that a walk along it, in either direction, has no event on the way.
     pub(crate) survival: f32,
-    /// The same for a walk in each channel.
+    /// Survival probability of a walk in each channel.
     pub(crate) survivals: Rgb,
     /// The densities of an event at its start, by a walk from its end, and at its end, by a walk from its start; per metre,
     /// where the walk comes so far.
@@ -23,7 +23,7 @@ pub(crate) struct Passage {
     is_first: bool,
 }
 
-/// Where a ray ends.
+/// End of a ray.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Arrival {
     /// At a surface.
@@ -34,7 +34,7 @@ pub(crate) enum Arrival {
     Escape,
 }
 
-/// What happened to a path along a ray.
+/// Travel of a path along a ray.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Travelled {
     pub(crate) arrival: Arrival,
@@ -54,7 +54,7 @@ pub(crate) struct MediumPart<'t> {
     pub(crate) medium: Medium<'t>,
     /// Distances along the ray, in metres, to where it begins and to where it ends, at a surface or at an event.
     pub(crate) ends: [f32; 2],
-    /// What happened before it.
+    /// Travel of the path up to where the part begins.
     pub(crate) before: &'t Travelled,
 }
 
@@ -69,7 +69,7 @@ impl Passage {
         is_first: true,
     };
 
-    /// The same line, continued by this.
+    /// This line, continued by the next.
     #[inline]
     pub(crate) fn then(self, next: FreePath) -> Passage {
         Passage {
@@ -82,7 +82,7 @@ impl Passage {
         }
     }
 
-    /// The same line, beyond a pane that lets this fraction of light straight through; `None` where that is nothing.
+    /// This line, beyond a pane that lets this fraction of light straight through; `None` where that is nothing.
     pub(super) fn beyond_pane(self, passed: Rgb) -> Option<Passage> {
         let transmittance = self.transmittance * passed;
         (!passed.is_black()).then_some(Passage { transmittance, panes: self.panes + 1, ..self })
@@ -107,7 +107,7 @@ impl Passage {
         self.survival * cos.unwrap_or(self.hazards[1])
     }
 
-    /// The same at its start, by a walk from its end, without the cosine at a surface.
+    /// Density of arriving at its start by a walk from its end, in the terms of [`Passage::arriving`], without the cosine at a surface.
     #[inline]
     pub(crate) fn returning(&self, is_in_medium: bool) -> f32 {
         if is_in_medium { self.survival * self.hazards[0] } else { self.survival }
@@ -169,7 +169,7 @@ impl Travelled {
     }
 }
 
-/// The same ray, from behind a surface that it has hit.
+/// This ray, from behind a surface that it has hit.
 pub(crate) fn behind(ray: &Ray, surface: &Surface) -> Ray {
     Ray { t_min: surface.t.next_up(), exclude: surface.primitive, ..*ray }
 }

@@ -1,11 +1,11 @@
-//! What an eye sees along a ray through media, up to the first surface: of fog and smoke, and of what they leave of the surface.
+//! Sight along a ray through media, up to the first surface: fog and smoke, and what they leave of the surface.
 
 use crate::media::{Media, draws_along};
 use bilux_math::Rgb;
 use bilux_scene::media::mean;
 use bilux_scene::{Ray, Surface, Tracer};
 
-/// What is seen along a ray; all of it expected values.
+/// Sight along a ray; all of it expected values.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sight {
     /// The first surface that separates two media, if there is one.
@@ -28,7 +28,7 @@ impl Sight {
         if air + inside > 0.0 { self.shown.map(|shown| shown / all) } else { [0.0; 2] }
     }
 
-    /// How much of a pixel it covers: everything, or before nothing what media stop.
+    /// Fraction of a pixel that it covers: 1 where there is a surface, otherwise what media stop.
     pub(crate) fn coverage(&self) -> f32 {
         if self.surface.is_some() { 1.0 } else { (1.0 - mean(self.transmittance)).max(0.0) }
     }

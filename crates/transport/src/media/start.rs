@@ -26,12 +26,12 @@ impl Media {
         media.with_closed(tracer, ray, |body| !scene.is_open(body))
     }
 
-    /// The same of a path that comes from infinity, where nothing fills the space behind an open boundary.
+    /// The media that a path from infinity starts in, where nothing fills the space behind an open boundary.
     pub(crate) fn from_infinity(tracer: &mut Tracer, ray: &Ray) -> Media {
         Media::AIR.with_closed(tracer, ray, |_| true)
     }
 
-    /// The same with the media that a path along a ray would leave, of those that `asks` names by the objects that stand for them.
+    /// These media and, of those that `asks` names by the objects that stand for them, the ones that a path along a ray would leave.
     fn with_closed(mut self, tracer: &mut Tracer, ray: &Ray, asks: impl Fn(u32) -> bool) -> Media {
         let (media, scene) = (&mut self, tracer.scene);
         let t_max = match scene.absorption_distance(ray) {
@@ -71,7 +71,7 @@ impl Media {
     }
 }
 
-/// How many objects are remembered without memory of their own.
+/// Number of objects that are remembered without memory of their own.
 const FEW: usize = 16;
 
 /// Objects that a ray has met.

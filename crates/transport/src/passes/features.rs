@@ -1,4 +1,4 @@
-//! What the camera sees of surfaces, whatever their lighting, on average over a pixel: albedo, normal and depth. Denoisers
+//! Features of the surfaces that the camera sees, whatever their lighting, on average over a pixel: albedo, normal and depth. Denoisers
 //! use these features to distinguish edges and textures from noise.
 //!
 //! They take a pass of their own over the film. Albedo, and the normals and depths that guide denoisers, are means over the

@@ -1,4 +1,4 @@
-//! How well a scene's own lights illuminate what a camera sees, if everything were clay: the studio uses this to decide
+//! Illumination of what a camera sees by a scene's own lights, if everything were clay: the studio uses this to decide
 //! whether it is needed, and how a picture is exposed that nobody has exposed.
 //!
 //! A pure function of the scene and the camera: it returns the same numbers for any number of threads, and reads no
@@ -28,7 +28,7 @@ const DARK: f32 = 0.05;
 /// that, is metal.
 const METAL: [f32; 2] = [0.1, 0.25];
 
-/// How a scene's own lights illuminate what its camera sees.
+/// Illumination of what a scene's camera sees by the scene's own lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Illumination {
     /// The fraction of the film that shows surfaces that are neither emissive nor glass.
@@ -46,7 +46,7 @@ pub struct Illumination {
     pub glow: f32,
 }
 
-/// What the camera sees at a point of the film.
+/// View from the camera through a point of the film.
 enum Seen {
     /// Neither a surface nor an emitter.
     Nothing,
@@ -92,7 +92,7 @@ fn median(mut values: Vec<f32>) -> f32 {
     values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// What the camera sees at a point of the film.
+/// Looks from the camera through a point of the film.
 fn at_point(
     tracer: &mut Tracer,
     camera: &dyn Camera,

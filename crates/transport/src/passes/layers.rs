@@ -46,7 +46,7 @@ impl fmt::Display for Strategy {
 /// Weighted and unweighted.
 pub(crate) type Both<T> = [T; 2];
 
-/// What all techniques find in a tile.
+/// Light that all techniques find in a tile.
 pub(crate) struct Layers<'a> {
     settings: &'a RenderSettings,
     scale_exponent: i32,

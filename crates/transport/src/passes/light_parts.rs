@@ -28,7 +28,7 @@ use std::sync::{Mutex, PoisonError};
 /// Edges of the longest paths of direct light: the light scatters once.
 const DIRECT_EDGES: u32 = 2;
 
-/// How the light of a picture is divided.
+/// Division of the light of a picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LightDivision {
     /// By scattering events: what a path brings after at most one of them, or after more.
@@ -95,7 +95,7 @@ pub fn light_parts(
     if progress.is_cancelled() { Ok(None) } else { Ok(Some(sums.parts(integrator)?)) }
 }
 
-/// What was found so far.
+/// Light that was found so far.
 struct Sums<'a> {
     settings: &'a RenderSettings,
     division: &'a LightDivision,

@@ -1,4 +1,4 @@
-//! How much of each pixel each object covers, for compositors.
+//! Mattes for compositors: how much of each pixel each object covers.
 //!
 //! Coverage is counted in camera rays of the picture's first samples. Mirrors and glass are surfaces like any other. The object
 //! that bounds fog or smoke covers what its inside hides of what lies behind, and that covers the rest: the shares of a pixel add

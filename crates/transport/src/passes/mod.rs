@@ -37,7 +37,7 @@ use std::sync::{Mutex, PoisonError};
 /// Maximum number of samples of each pixel in one pass over the film.
 const PASS: u32 = 32;
 
-/// Who follows the passes.
+/// Followers of the passes.
 #[derive(Clone, Copy)]
 pub(crate) struct Followers<'a> {
     pub(crate) progress: &'a dyn Progress,

@@ -1,4 +1,4 @@
-//! What points receive, and how certain that is: each is measured on its own, without a film.
+//! Light that points receive, and how certain that is: each is measured on its own, without a film.
 
 use crate::film::error::{FilmError, RenderError};
 use crate::film::failures::SamplePlace;
@@ -19,7 +19,7 @@ use std::time::Instant;
 /// The samples after which it is first asked whether they are enough.
 const FIRST: u32 = 64;
 
-/// What points receive.
+/// Light that points receive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Received {
     /// Irradiance of each point in W/m²: red, green, blue and luminance.

@@ -40,7 +40,7 @@ impl RenderSettings {
     }
 }
 
-/// What an integrator that chooses its strategies chooses for a picture; `None` for the others. The plan's integrator
+/// Plan of an integrator that chooses its strategies, for a picture; `None` for the others. The plan's integrator
 /// renders as the one that chose it, without choosing again: for pictures that are rendered in several ranges of
 /// samples.
 ///
@@ -128,7 +128,7 @@ struct Run<'a> {
     scale: i32,
 }
 
-/// Where a range of samples stands in the picture, for its checkpoints.
+/// Place of a range of samples in the picture, for its checkpoints.
 struct Place<'a> {
     schedule: &'a Schedule,
     /// With an interval: the samples before these, and their replicates.
@@ -276,7 +276,7 @@ impl<'a> Run<'a> {
         Ok(rendered)
     }
 
-    /// The same as [`Run::take`], one sample after the other, so that each goes into its replicate.
+    /// Adds samples as [`Run::take`] does, but one after the other, so that each goes into its replicate.
     fn take_each(
         &self,
         samples: &Range<u32>,

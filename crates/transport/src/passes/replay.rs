@@ -27,13 +27,13 @@ pub struct Replay {
     pub radiance: Rgb,
     /// Number of pixels that its light subpath contributes to.
     pub splats: usize,
-    /// What each technique of a bidirectional integrator contributed, in the order in which it was found.
+    /// Contributions of the techniques of a bidirectional integrator, in the order in which they were found.
     pub contributions: Vec<Contributed>,
     /// Number of rays traced.
     pub rays: u64,
 }
 
-/// What one technique contributed to a sample.
+/// Contribution of one technique to a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contributed {
     /// The number of vertices of the light subpath, the light's own included.
@@ -42,9 +42,9 @@ pub struct Contributed {
     pub t: u32,
     /// True if the last vertices of both were merged, false if they were connected.
     pub is_merged: bool,
-    /// Its MIS weight, 0..=1.
+    /// MIS weight, 0..=1.
     pub weight: f32,
-    /// What it adds to the radiance of the sample, weighted.
+    /// Weighted radiance that it adds to the sample.
     pub light: Rgb,
     /// For light that belongs to other pixels (t = 1), where it falls on the film's plane (the film is 0..1 on both axes):
     /// there `light` is an integral over the whole film.

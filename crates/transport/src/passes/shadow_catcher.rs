@@ -206,7 +206,7 @@ impl Sums {
     }
 }
 
-/// How much of what is behind it the model hides from the camera, 0..=1.
+/// Fraction of what is behind the model that the model hides from the camera, 0..=1.
 fn hidden(tracer: &mut Tracer, ray: &Ray, catcher: ShadowCatcher) -> f64 {
     let of_model = |surface: &Surface| surface.object < catcher.objects;
     let first = tracer.closest(ray).filter(of_model);

@@ -35,12 +35,12 @@ pub struct Strategies {
     pub counters: Counters,
 }
 
-/// What one technique has found: pixels of the window in rows, the top row first.
+/// Light that one technique has found: pixels of the window in rows, the top row first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrategyPicture {
     /// The technique.
     pub strategy: Strategy,
-    /// Its weighted contribution: all of them add up to the picture, except for longer paths.
+    /// Weighted contribution: those of all techniques add up to the picture, except for longer paths.
     pub weighted: Vec<Rgb>,
     /// All light of paths of this length, as far as this technique finds it.
     pub unweighted: Vec<Rgb>,
@@ -86,7 +86,7 @@ pub fn strategies(
     Ok(Some(sums.means(settings, scale_exponent(scene))?))
 }
 
-/// What all techniques have found in all samples so far.
+/// Light that all techniques have found in all samples so far.
 #[derive(Default)]
 struct Sums {
     /// In the pixel of the camera subpath. Each pixel is summed in the order of its samples, so that floating point

@@ -1,4 +1,4 @@
-//! What each pixel costs: the rays that its samples trace, what these ask of the accelerator, and the vertices of its paths.
+//! Cost of each pixel: the rays that its samples trace, what these ask of the accelerator, and the vertices of its paths.
 //!
 //! The samples of the picture are taken once more, one at a time, as [`crate::replay()`] takes them. Work is counted and
 //! not clocked: seconds would depend on the machine and its load, and so would the bytes of the picture. Rays and vertices

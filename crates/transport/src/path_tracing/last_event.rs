@@ -12,7 +12,7 @@ pub(crate) struct LastEvent {
     /// The density of the direction, over solid angle.
     pub(crate) pdf: f32,
     pub(crate) is_in_medium: bool,
-    /// How the ray came there, where [equiangular points](crate::media::equiangular) may be.
+    /// Approach of the ray that came there, where [equiangular points](crate::media::equiangular) may be.
     pub(crate) approach: Option<Approach>,
 }
 

@@ -18,7 +18,7 @@ pub(super) struct LightConnection {
 }
 
 impl LightConnection {
-    /// What it brings, and the number of panes on the way.
+    /// Light that it brings, and the number of panes on the way.
     #[inline]
     pub(super) fn trace(&self, tracer: &mut Tracer) -> (Rgb, u32) {
         let Some(passage) = self.segment.passage(tracer) else { return (Rgb::BLACK, 0) };

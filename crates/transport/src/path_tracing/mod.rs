@@ -36,13 +36,13 @@ struct Vertex<'a> {
     media: &'a Media,
     /// [`Walk::odds`].
     odds: Rgb,
-    /// How its ray came here, where [equiangular points](equiangular) may be.
+    /// Approach of its ray, where [equiangular points](equiangular) may be.
     approach: Option<Approach>,
     /// [`Walk::panes`].
     panes: u32,
 }
 
-/// How light is sampled where both techniques could find it.
+/// Sampling of light that both techniques could find.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Sampling {
     Mis,
@@ -53,7 +53,7 @@ pub(crate) enum Sampling {
 /// A path as it grows from the camera.
 pub(crate) struct Path {
     pub(crate) walk: Walk,
-    /// What it has found.
+    /// Light that it has found.
     pub(crate) light: Rgb,
     /// The last event but for those of panes, which are passed straight. `None` after the camera and after other delta events, where no
     /// light can be sampled.
@@ -127,8 +127,8 @@ impl PathTracing {
         path.light += path.walk.seen(task.sample) * self.background(task, path);
     }
 
-    /// What happens to a path at a surface or in a medium: it collects the light that is emitted there, connects to lights, and
-    /// goes on in another direction; false when it ends.
+    /// Follows a path through an event at a surface or in a medium: it collects the light that is emitted there, connects to
+    /// lights, and goes on in another direction; false when it ends.
     #[inline]
     fn interact(&self, path: &mut Path, travelled: &Travelled, task: &mut Task) -> bool {
         let wo = path.walk.wo();
@@ -245,7 +245,7 @@ impl PathTracing {
         sum
     }
 
-    /// What a ray that leaves the scene sees of an infinite light of this radiance and density.
+    /// Light that a ray which leaves the scene sees of an infinite light of this radiance and density.
     #[inline]
     pub(crate) fn seen_of(
         &self,
@@ -315,8 +315,8 @@ impl PathTracing {
         })
     }
 
-    /// What one light, chosen with this probability, sends along `wo`, from the point that `u` picks. The depth of the vertex and what the
-    /// sample sees of it are for the record.
+    /// Light that one light, chosen with this probability, sends along `wo`, from the point that `u` picks. The depth of the
+    /// vertex and what the sample sees of it are for the record.
     fn light_sample(
         &self,
         task: &mut Task,

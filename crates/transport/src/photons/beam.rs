@@ -48,7 +48,7 @@ pub(crate) struct Leaving<const N: usize = 1> {
     pub(crate) origin: u16,
     /// The channel of its sample's distances.
     pub(crate) channel: u8,
-    /// It carries a single wavelength.
+    /// Whether it carries a single wavelength.
     pub(crate) is_split: bool,
     /// The vertex is a point of a medium; it is infinitely far away.
     pub(crate) leaves_medium: bool,
@@ -63,7 +63,7 @@ pub(crate) struct Leaving<const N: usize = 1> {
     pub(crate) events: Events,
 }
 
-/// What a beam brings to one of its points.
+/// State of a beam's subpath at one of its points.
 pub(crate) struct Crossing<const N: usize> {
     pub(crate) beta: Rgb,
     pub(crate) odds: Rgb,

@@ -1,4 +1,4 @@
-//! What the light subpaths of one iteration leave at single points, indexed by position.
+//! Photons that the light subpaths of one iteration leave at single points, indexed by position.
 
 use crate::film::limits::MAX_DEPTH;
 use bilux_math::Vec3;

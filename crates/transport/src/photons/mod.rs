@@ -14,12 +14,12 @@ use crate::techniques::{PerSet, TechniqueCounts};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::Scene;
 
-/// How camera subpaths and light subpaths are merged.
+/// Merging of camera subpaths and light subpaths.
 #[derive(Clone, Copy, Debug)]
 pub struct Merging {
     /// The maximum distance between merged vertices in the first iteration, as a fraction of the scene's radius.
     pub radius: f32,
-    /// How fast that distance shrinks: by the power (alpha - 1) / 2 of the iteration's number, 0..1.
+    /// Exponent of shrinking, 0..1: that distance falls by the power (alpha - 1) / 2 of the iteration's number.
     pub alpha: f32,
     /// Maximum number of light subpaths per iteration whose vertices are stored.
     pub max_light_paths: u32,
@@ -33,16 +33,16 @@ pub struct Merging {
     pub(crate) techniques: TechniqueCounts,
 }
 
-/// How often the photons and beams of an iteration are merged.
+/// Counts with which the photons and beams of an iteration are merged.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MergeCounts {
     /// Light subpaths times the area of the disc that they are merged over, in square metres: η of [Georgiev 2012].
     pub(crate) eta: f32,
-    /// Those whose beams are kept, times the width that beams are merged over, in metres.
+    /// Light subpaths whose beams are kept, times the width that beams are merged over, in metres.
     pub(crate) beams: f32,
     /// The largest extinction of media that have beams, per metre.
     pub(crate) densest: f32,
-    /// Those whose points in denser media are kept.
+    /// Light subpaths whose points in denser media are kept.
     pub(crate) points: f32,
     /// The merging radius, in metres.
     pub(crate) radius: f32,
@@ -51,7 +51,7 @@ pub(crate) struct MergeCounts {
 }
 
 impl MergeCounts {
-    /// Not at all.
+    /// No merging.
     pub(crate) const NONE: MergeCounts =
         MergeCounts { eta: 0.0, beams: 0.0, densest: 0.0, points: 0.0, radius: 0.0, light_paths: 1.0 };
 }
@@ -67,7 +67,7 @@ const BEAM_PATHS: f32 = 4.0;
 /// The maximum number of light subpaths whose points in dense media are kept: each may have some hundreds.
 const MAX_POINT_PATHS: f32 = 16384.0;
 
-/// How many light subpaths leave what.
+/// Numbers of light subpaths, by what they leave.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PhotonPaths {
     /// Photons on surfaces.
@@ -77,7 +77,7 @@ pub(crate) struct PhotonPaths {
 }
 
 impl Merging {
-    /// How often an iteration merges so many light subpaths, in a film of so many `pixels`.
+    /// Counts with which an iteration merges so many light subpaths, in a film of so many `pixels`.
     pub(crate) fn counts(
         &self,
         scene: &Scene,
@@ -141,7 +141,7 @@ pub(crate) struct Photon<const N: usize = 1> {
     pub(crate) wo: Vec3,
     pub(crate) n_geom: Vec3,
     pub(crate) beta: Rgb,
-    /// What the MIS weights of [`crate::bidirectional`] know of the vertex.
+    /// Terms of the MIS weights of [`crate::bidirectional`] at the vertex.
     pub(crate) connected: PerSet<N>,
     pub(crate) d_vc: PerSet<N>,
 }
@@ -164,7 +164,7 @@ pub(crate) struct MediumPhoton<const N: usize = 1> {
     pub(crate) radius: f32,
 }
 
-/// What a photon knows of the channels of distances in media.
+/// Channel of a photon's distances in media, and the odds of all channels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PhotonWalk {
     /// [`crate::walk::Walk::odds`].
@@ -173,12 +173,12 @@ pub(crate) struct PhotonWalk {
     pub(crate) channel: u8,
 }
 
-/// What the light subpaths of an iteration leave for camera subpaths to merge with.
+/// Photons and beams that the light subpaths of an iteration leave for camera subpaths to merge with.
 pub struct Photons<const N: usize = 1> {
     /// With the number of light subpaths times the area that they are merged over: η of [Georgiev 2012].
     techniques: TechniqueCounts<N>,
     surfaces: PhotonGrid<Photon<N>>,
-    /// What each photon knows of the channels, where distances in media are not the same in all of them.
+    /// Channel and odds of each photon, where distances in media are not the same in all channels.
     walks: Vec<PhotonWalk>,
     /// Their points in dense media.
     points: PhotonGrid<MediumPhoton<N>>,
@@ -189,7 +189,7 @@ pub struct Photons<const N: usize = 1> {
 /// Photons in the order in which they were traced.
 pub(crate) struct TracedPhotons<const N: usize = 1> {
     pub(crate) surfaces: Vec<(PhotonPosition, Photon<N>)>,
-    /// Those of the photons on surfaces, or none at all.
+    /// Walks of the photons on surfaces, or none at all.
     pub(crate) walks: Vec<PhotonWalk>,
     pub(crate) points: Vec<(PhotonPosition, MediumPhoton<N>)>,
     pub(crate) beams: Vec<Beam<N>>,

@@ -16,7 +16,7 @@ use bilux_scene::bsdf::faces_away;
 use bilux_scene::{CpuLevel, Tracer};
 use std::f32::consts::FRAC_1_PI;
 
-/// What Lambertian vertices have beyond the others.
+/// Data of Lambertian vertices, beyond those of all vertices.
 pub(super) struct Diffuse {
     triangles: Triangles,
     /// The lanes of other shapes, each with its point, the bound on its error, its geometric normal, and its shading

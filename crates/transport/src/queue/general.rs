@@ -11,7 +11,7 @@ use bilux_accel::Hit;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{CpuLevel, Tracer, TransportMode};
 
-/// What these vertices have beyond the others.
+/// Data of these vertices, beyond those of all vertices.
 #[derive(Default)]
 pub(super) struct General {
     interactions: Vec<Interaction>,

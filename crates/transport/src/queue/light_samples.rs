@@ -13,7 +13,7 @@ use bilux_scene::scene::SceneLight;
 pub(super) struct LightSamples {
     pub(super) wi: Columns3,
     pub(super) li: Columns3,
-    /// Where the ray ends: the point on the light; `wi` for light from infinity.
+    /// Ends of the rays: the point on the light; `wi` for light from infinity.
     pub(super) towards: Columns3,
     pub(super) n_light: Columns3,
     /// 1 for light from infinity, otherwise 0.
@@ -39,7 +39,7 @@ struct Triangles {
     from: Columns3,
     /// The sampler's numbers; the first of each is what is left after a triangle was chosen.
     u: [Column; 2],
-    /// What is left of the first number after it has picked a triangle, for lights of few.
+    /// Rest of the first number after it has picked a triangle, for lights of few.
     rest: Column,
     probability: f32,
     sides: Sides,
@@ -136,7 +136,7 @@ impl LightSamples {
         self.is_delta.0[i] = if is_delta { 1.0 } else { 0.0 };
     }
 
-    /// The same where every vertex samples the same mesh light.
+    /// Samples the same mesh light for every vertex.
     pub(super) fn sample_mesh(
         &mut self,
         points: Points,

@@ -1,4 +1,4 @@
-//! How paths leave surfaces, [`LANES`] of them at a time: throughput, Russian roulette, the next ray.
+//! Rays on which paths leave surfaces, [`LANES`] of them at a time: throughput, Russian roulette, the next ray.
 //!
 //! Every expression is the one that a single path evaluates ([`PathTracing::interact`]), in the same order, so that the bits are
 //! the same.
@@ -48,7 +48,7 @@ impl NextRays {
         self.eta_scale.0[i] = one.path.walk.eta_scale;
     }
 
-    /// Where the rays start.
+    /// Sets where the rays start.
     #[inline(always)]
     pub(super) fn leave_surface(&mut self, v: &Vertices) {
         let Vertices { p, p_error, n_geom, .. } = v;
@@ -121,7 +121,7 @@ pub(super) fn density(strength: f32, pdf: f32) -> f32 {
     if strength > 0.0 { weighted / strength } else { 0.0 }
 }
 
-/// What is left of a random number after it has chosen the only lobe, which has this strength.
+/// Rest of a random number after it has chosen the only lobe, which has this strength.
 #[inline(always)]
 pub(super) fn rest_of_number(u_choice: f32, strength: f32) -> f32 {
     let rest = u_choice * strength;

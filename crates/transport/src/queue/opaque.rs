@@ -15,7 +15,7 @@ use bilux_math::{Frame, Vec2};
 use bilux_scene::bsdf::{AlbedoTable, OpaqueBaseAlbedos, OpaqueBaseForWo, OpaqueBaseInputs, faces_away};
 use bilux_scene::{Surface, Tracer};
 
-/// What these vertices have beyond the others.
+/// Data of these vertices, beyond those of all vertices.
 pub(super) struct Opaque {
     table: &'static AlbedoTable,
     /// The surfaces of a chunk of hits, and what they are made of.
@@ -25,7 +25,7 @@ pub(super) struct Opaque {
     n_shade: Columns3,
     /// The numbers of each lobe.
     lobes: [Column; OpaqueBaseForWo::NUMBERS],
-    /// What the table of albedos says.
+    /// Albedos from the table.
     albedos: [Column; 5],
     /// The number that picks one of the lobe's two densities.
     u_choice: Column,

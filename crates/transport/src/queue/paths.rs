@@ -37,7 +37,7 @@ impl QueuedPath {
     }
 }
 
-/// What the connection of a path's vertex with a light brings if its shadow ray hits nothing.
+/// Light that the connection of a path's vertex with a light brings if its shadow ray hits nothing.
 #[derive(Clone, Copy)]
 pub(super) struct Unoccluded {
     /// Index of the path.

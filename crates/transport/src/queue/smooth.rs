@@ -16,7 +16,7 @@ use bilux_math::frame::reflect;
 use bilux_scene::TransportMode;
 use bilux_scene::bsdf::SmoothLobe;
 
-/// What these vertices have beyond the others.
+/// Data of these vertices, beyond those of all vertices.
 pub(super) struct Smooth {
     triangles: Triangles,
     n_shade: Columns3,

@@ -42,7 +42,7 @@ pub(super) struct Vertices {
     shadow: ShadowRays,
 }
 
-/// What the columns hold of a surface; see [`Surface`] for the fields.
+/// Point of a surface, as the columns hold it; see [`Surface`] for the fields.
 pub(super) struct Point {
     pub(super) p: Vec3,
     pub(super) p_error: Vec3,
@@ -98,7 +98,7 @@ impl Vertices {
         i
     }
 
-    /// The same without the point.
+    /// Adds the vertex of a path as [`Vertices::push`] does, but without its point.
     #[inline]
     pub(super) fn push_path(
         &mut self,

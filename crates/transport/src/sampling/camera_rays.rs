@@ -23,7 +23,7 @@ pub struct CameraRays<'a> {
     merges: bool,
 }
 
-/// How far samples spread, each 0..=1 of what filter, aperture and shutter allow. With 0, pixels are sampled in a
+/// Extents over which samples spread, each 0..=1 of what filter, aperture and shutter allow. With 0, pixels are sampled in a
 /// regular pattern that begins at the centre, and lens and shutter in their middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraSpread {
@@ -64,18 +64,18 @@ impl<'a> CameraRays<'a> {
         CameraRays { context, settings, spread, has_lens: camera.has_lens(), merges: false }
     }
 
-    /// The same for subpaths that are merged.
+    /// These rays for subpaths that are merged.
     pub(crate) fn merging(self) -> CameraRays<'a> {
         CameraRays { merges: true, ..self }
     }
 
-    /// The same with light subpaths that are aimed by a guide.
+    /// These rays with light subpaths that are aimed by a guide.
     pub(crate) fn guided(mut self, guide: Option<Arc<Guide>>) -> CameraRays<'a> {
         self.context.emission = Emission::new(self.context.scene, guide);
         self
     }
 
-    /// The same where [`crate::techniques::Contribution::origin`] is the index of a light. It changes no sample.
+    /// These rays where [`crate::techniques::Contribution::origin`] is the index of a light. That changes no sample.
     pub(crate) fn by_light(mut self) -> CameraRays<'a> {
         self.context.emission.names_lights = true;
         self

@@ -10,7 +10,7 @@ pub(crate) struct Exposure {
     opens: f32,
     /// For the first row.
     closes: f32,
-    /// How much later the last row is exposed.
+    /// Delay of the last row after the first, in seconds.
     readout: f32,
     /// The half of a row's height, as a part of the film.
     half_row: f32,
@@ -32,8 +32,8 @@ impl Exposure {
         [self.opens, self.closes]
     }
 
-    /// How much later than the first row a point of the film is exposed: not before it, and not after the last. Beyond the film's edges, time
-    /// runs backwards: then rays are even over time, whichever filter spreads them over the film.
+    /// Delay after the first row with which a point of the film is exposed: not before it, and not after the last. Beyond the
+    /// film's edges, time runs backwards: then rays are even over time, whichever filter spreads them over the film.
     #[inline]
     pub(crate) fn delay(&self, film: Vec2) -> f32 {
         if self.readout == 0.0 {

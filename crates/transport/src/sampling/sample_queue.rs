@@ -20,7 +20,7 @@ pub trait SampleQueue {
     ) -> bool;
 }
 
-/// Where the light of samples goes.
+/// Receiver of the light of samples.
 pub struct SampleSink<'t, 's> {
     film: &'t mut Film,
     splats: &'t mut Splats<'s>,

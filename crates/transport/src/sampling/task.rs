@@ -1,4 +1,4 @@
-//! What an integrator works with: what all samples of a render share, and what belongs to one of them.
+//! Data that an integrator works with: what all samples of a render share, and what belongs to one of them.
 
 use crate::light::choice::LightChoice;
 use crate::light::emission::Emission;
@@ -11,13 +11,13 @@ use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Camera, Scene, Tracer, TransportMode, Wavelength};
 use std::sync::Arc;
 
-/// What all samples of a render share.
+/// Data that all samples of a render share.
 pub struct Context<'a> {
     /// The scene.
     pub scene: &'a Scene,
     /// The camera.
     pub camera: &'a dyn Camera,
-    /// Where light subpaths are connected with the camera.
+    /// Part of the film's plane where light subpaths are connected with the camera.
     pub(crate) reach: Reach,
     /// When.
     pub(crate) exposure: Exposure,
@@ -31,10 +31,10 @@ pub struct Context<'a> {
     pub max_depth: u32,
 }
 
-/// What belongs to one sample.
+/// State of one sample.
 #[derive(Clone, Debug)]
 pub struct SampleState {
-    /// Its random numbers.
+    /// Random numbers of the sample.
     pub sampler: PixelSampler,
     /// The wavelength of its paths, wherever they begin.
     pub wavelength: Wavelength,
@@ -42,11 +42,11 @@ pub struct SampleState {
     pub(crate) channel: u8,
     /// Vertices that its paths have reached so far. Queues do not count them.
     pub vertices: u32,
-    /// What is recorded of it, if anything is.
+    /// Record of the sample, if anything is recorded.
     pub record: Option<Box<Record>>,
 }
 
-/// What is recorded of a sample.
+/// Record of a sample.
 #[derive(Clone, Debug, Default)]
 pub struct Record {
     /// Events along its paths, if these are wanted.
@@ -55,7 +55,7 @@ pub struct Record {
     pub found: Option<Vec<FoundLight>>,
     /// The direction in which a path that [receives](bilux_scene::Camera::receives) leaves its point.
     pub(crate) first: Option<Vec3>,
-    /// How many of the lights found are those that the point itself samples: theirs comes straight, or through panes.
+    /// Number of the lights found that the point itself samples: their light comes straight, or through panes.
     pub(crate) straight: usize,
     /// The path from the camera, if the lengths of those that find light are wanted.
     pub(crate) way: Option<Way>,
@@ -63,11 +63,11 @@ pub struct Record {
 
 /// The tools of one sample.
 pub struct Task<'t, 'a> {
-    /// What it shares with all others.
+    /// Data that the sample shares with all others.
     pub context: &'t Context<'a>,
     /// Traces rays, and counts them.
     pub tracer: &'t mut Tracer<'a>,
-    /// What is its own.
+    /// State of its own.
     pub sample: &'t mut SampleState,
 }
 
@@ -80,7 +80,7 @@ pub struct FoundLight {
     pub light: Option<usize>,
     /// The direction of the path's last edge, from the camera's end towards the light; of any length.
     pub towards: Vec3,
-    /// What it adds to the sample.
+    /// Radiance that it adds to the sample.
     pub radiance: Rgb,
     /// The optical length of its path, in metres, if that is recorded; infinite if it comes from infinity.
     pub length: f64,
@@ -93,18 +93,18 @@ pub struct Event {
     pub depth: u32,
     /// A description for people.
     pub what: String,
-    /// Where on the path it happened, if it is a vertex of one.
+    /// Vertex of the path at which it happened, if there is one.
     pub vertex: Option<PathVertex>,
 }
 
 /// A vertex of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathVertex {
-    /// What happened there.
+    /// Kind of the vertex.
     pub kind: VertexKind,
     /// The point in the scene; for what is infinitely far away, the unit direction to it.
     pub at: Vec3,
-    /// What it adds to the light of the sample.
+    /// Light that it adds to the sample.
     pub light: Rgb,
 }
 
@@ -115,7 +115,7 @@ impl PathVertex {
     }
 }
 
-/// What happens at a vertex.
+/// Kind of a vertex: what happens there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VertexKind {
     /// A surface of the camera's path, whatever happens there.
@@ -134,7 +134,7 @@ pub enum VertexKind {
     Escape,
     /// A point of a light that the vertex before it is connected with.
     LightSample,
-    /// The same of a light that is infinitely far away.
+    /// A light that is infinitely far away, with which the vertex before is connected.
     DistantLight,
     /// A surface of the light's path.
     LightPath,
@@ -214,7 +214,7 @@ impl SampleState {
         }
     }
 
-    /// The same for a vertex of a path.
+    /// Records an event at a vertex of a path; if events are not recorded, `what` is not called.
     #[inline]
     pub fn note_vertex(&mut self, depth: u32, what: impl FnOnce() -> (PathVertex, String)) {
         if let Some(events) = self.events() {

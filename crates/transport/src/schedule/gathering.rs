@@ -25,12 +25,12 @@ pub struct Part {
     pub window: Window,
 }
 
-/// How a picture is divided.
+/// Division of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Division {
-    /// How many parts are rendered at a time.
+    /// Number of parts that are rendered at a time.
     pub workers: u32,
-    /// How many threads each worker has.
+    /// Number of threads of each worker.
     pub threads: u32,
     /// Whether parts may be windows: not if light subpaths are traced, which takes all samples of the whole film for each
     /// window.
@@ -46,7 +46,7 @@ struct Pass {
     parts: VecDeque<Part>,
     /// The parts that are given out and have not come back.
     missing: HashSet<Part>,
-    /// What came back.
+    /// Film of the parts that came back.
     film: Option<Film>,
 }
 
@@ -73,12 +73,12 @@ pub struct Gathering {
 /// The maximum number of samples of all pixels in a part, for each thread of a worker: some seconds. Only then is
 /// there progress, and no more than that is lost with a worker.
 const MOST: usize = 1 << 21;
-/// How many parts for each worker there should at least be, if parts may be windows: else some work while others have
-/// nothing left to do.
+/// Minimum number of parts for each worker, if parts may be windows: with fewer, some work while others have nothing left
+/// to do.
 const PARTS: u32 = 16;
 /// The minimum number of rows of a window.
 const MIN_ROWS: u32 = 16;
-/// How many parts for each worker are given out before it is known that they are needed.
+/// Number of parts for each worker that are given out before it is known that they are needed.
 const AHEAD: usize = 4;
 /// More workers than anybody has; keeps numbers of parts small.
 const MAX_WORKERS: u32 = 1 << 20;

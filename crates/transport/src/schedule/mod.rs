@@ -26,19 +26,19 @@ pub(crate) struct Schedule {
     left: VecDeque<Range<u32>>,
     /// The first sample.
     start: u32,
-    /// How many samples the last film that was looked at has.
+    /// Samples per pixel of the last film that was looked at.
     done: u32,
     batches: Option<BatchMeans>,
 }
 
-/// What a schedule remembers of the films that it has looked at.
+/// State that a schedule keeps of the films that it has looked at.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct ScheduleMemory {
     /// Samples per pixel of the last of them.
     pub(crate) done: u32,
-    /// Where noise or time may end the picture.
+    /// Measured noise, where noise or time may end the picture.
     pub(crate) noise: Option<NoiseMemory>,
-    /// Where the variance is estimated.
+    /// Batches, where the variance is estimated.
     pub(crate) batches: Option<BatchMeans>,
 }
 
@@ -104,7 +104,7 @@ impl Schedule {
         }
     }
 
-    /// The same passes, none of which is shortened or left out because of the time or, if it does not `measure`, because
+    /// Schedule of the same passes, none of which is shortened or left out because of the time or, if it does not `measure`, because
     /// of the noise.
     pub(crate) fn without_clock(settings: &RenderSettings, measures: bool) -> Schedule {
         let noise = settings.stop.noise.filter(|_| measures);
@@ -133,7 +133,7 @@ impl Schedule {
         }
     }
 
-    /// The same, if samples up to `begun` are begun already: then these have to be completed, whatever time it is.
+    /// The next samples to take, if samples up to `begun` are begun already: then these have to be completed, whatever time it is.
     ///
     /// # Errors
     /// When they are more than the picture takes.
@@ -166,7 +166,7 @@ impl Schedule {
         self.watch.as_ref().map(StopMonitor::expected)
     }
 
-    /// How far the picture got, and its batches. `film` is the film, if all passes are complete.
+    /// State that the picture has reached, and its batches. `film` is the film, if all passes are complete.
     pub(crate) fn end(self, film: Option<&Film>) -> (Option<Reached>, Option<BatchMeans>) {
         let Schedule { watch, mut batches, .. } = self;
         if let Some(batches) = &mut batches {

@@ -14,9 +14,9 @@ pub struct Choice {
 /// A set of techniques, and the estimates for it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
-    /// Its name.
+    /// Name of the set.
     pub name: &'static str,
-    /// Its value of the parameter `techniques` of `auto`.
+    /// Value of the parameter `techniques` of `auto`.
     pub techniques: &'static str,
     /// Expected relative variance of one sample of a pixel.
     pub error: f64,

@@ -1,4 +1,4 @@
-//! How a caller follows the work, and stops it.
+//! Progress, by which a caller follows the work, and stops it.
 
 /// Receives progress, and may cancel the work. Called from many threads, about once per tile.
 pub trait Progress: Sync {

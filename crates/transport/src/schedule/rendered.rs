@@ -19,7 +19,7 @@ pub struct Rendered {
     pub cancelled: bool,
     /// The choice of an integrator that chooses.
     pub choice: Option<Choice>,
-    /// Its state when it ended, where it could end early ([`crate::RenderSettings::stop`]).
+    /// State of the picture when it ended, where it could end early ([`crate::RenderSettings::stop`]).
     pub reached: Option<Reached>,
     /// The pixels' confidence intervals, where requested ([`crate::RenderSettings::interval`]): of whole iterations, even if
     /// it was cancelled.

@@ -1,4 +1,4 @@
-//! What to render, and how: everything apart from scene, camera and integrator.
+//! Settings of a render: everything apart from scene, camera and integrator.
 
 use crate::film::error::RenderError;
 use crate::film::filters::Filter;
@@ -12,7 +12,7 @@ use std::time::Duration;
 /// Enough for ray trees as deep as [`MAX_DEPTH`].
 const STACK_BYTES: usize = 16 << 20;
 
-/// What to render, apart from scene, camera and integrator.
+/// Settings of a render, apart from scene, camera and integrator.
 #[derive(Clone, Debug)]
 pub struct RenderSettings {
     /// Width of the whole film in pixels.
@@ -31,20 +31,20 @@ pub struct RenderSettings {
     pub threads: usize,
     /// Maximum number of scattering events after the camera; those inside skin, milk and the like do not count. 0 is emission only.
     pub max_depth: u32,
-    /// Where in a pixel its central sample lies.
+    /// Point of a pixel where its central sample lies.
     pub pixel_anchor: PixelAnchor,
-    /// How samples spread around the pixel's centre.
+    /// Spread of samples around the pixel's centre.
     pub filter: Filter,
     /// Count nodes and triangle tests, not only rays.
     pub count_work: bool,
-    /// What may end the picture before all samples are taken.
+    /// Conditions that may end the picture before all samples are taken.
     pub stop: Stop,
     /// Take samples in independent replicates, which show how far their mean may be off ([`crate::Rendered::interval`]). These
     /// are different samples, a little less evenly distributed.
     pub interval: bool,
     /// Estimate the variance of each pixel ([`crate::Rendered::batch_means`]), which denoisers need.
     pub batch_means: bool,
-    /// How much later the last row of pixels is exposed than the first, in seconds. The shutter of the scene is open while any row is
+    /// Delay of the last row of pixels after the first, in seconds. The shutter of the scene is open while any row is
     /// exposed, and longer than that.
     pub readout: f32,
 }
@@ -52,15 +52,15 @@ pub struct RenderSettings {
 /// The point that represents a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PixelAnchor {
-    /// Its centre.
+    /// Centre of the pixel.
     #[default]
     Centre,
-    /// Its upper left corner, at integer coordinates, as in older renderers.
+    /// Upper left corner of the pixel, at integer coordinates, as in older renderers.
     Corner,
 }
 
 impl PixelAnchor {
-    /// Its distance from the pixel's left and upper edge, in pixels.
+    /// Distance of the point from the pixel's left and upper edge, in pixels.
     #[inline]
     pub(crate) fn offset(self) -> f32 {
         match self {
@@ -112,7 +112,7 @@ impl RenderSettings {
         self.crop.unwrap_or(Window::whole(self.width, self.height))
     }
 
-    /// What the pixels of the whole film reach.
+    /// Reach of the pixels of the whole film.
     pub(crate) fn reach(&self) -> Reach {
         let (size, anchor) = (Vec2::new(self.width as f32, self.height as f32), self.pixel_anchor.offset());
         let reach = Vec2::splat(self.filter.radius());
@@ -141,7 +141,7 @@ impl RenderSettings {
     }
 }
 
-/// What ends a picture before all of its samples are taken.
+/// Conditions that end a picture before all of its samples are taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stop {
     /// The noise that is low enough: see [`crate::schedule::stop::Reached::noise`].

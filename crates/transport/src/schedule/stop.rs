@@ -44,13 +44,13 @@ pub(crate) struct StopMonitor {
     /// The time that was spent on samples before that, by a render that this one continues.
     earlier: Duration,
     samples: Range<u32>,
-    /// How many of them the film holds.
+    /// Number of these samples that the film holds.
     pub(crate) done: u32,
     meter: NoiseMeter,
     pub(crate) reached: Option<Reached>,
 }
 
-/// What a monitor remembers of the films that it has seen.
+/// State that a monitor keeps of the films that it has seen.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct NoiseMemory {
     pub(crate) meter: NoiseMeter,

@@ -1,4 +1,4 @@
-//! What a subpath carries along for the weights of its techniques.
+//! Terms that a subpath carries along for the weights of its techniques.
 
 use crate::film::limits::MAX_CONNECTED_ROW;
 use crate::techniques::{DirectLight, PerSet, TechniqueCounts};
@@ -10,9 +10,9 @@ pub(crate) struct Partial<const N: usize = 1> {
     pub(crate) d_vcm: f32,
     /// dVCM times the number of techniques that connect there.
     pub(crate) connected: PerSet<N>,
-    /// The same, where the connection is one with the camera.
+    /// dVCM times the number of techniques that connect there with the camera.
     pub(crate) splatted: PerSet<N>,
-    /// How often [merging](crate::media::interaction::Interaction::merged) counts this vertex.
+    /// Frequency with which [merging](crate::media::interaction::Interaction::merged) counts this vertex.
     pub(crate) merged: PerSet<N>,
     /// dVC: what connections and merging count together, summed over the steps before.
     pub(crate) d_vc: PerSet<N>,
@@ -22,12 +22,12 @@ pub(crate) struct Partial<const N: usize = 1> {
     pub(crate) except_direct: PerSet<N>,
 }
 
-/// What turns densities over solid angle into those of arriving, per area or per volume, times the squared distance.
+/// Factors that turn densities over solid angle into those of arriving, per area or per volume, times the squared distance.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Edge {
     /// At the end: the cosine at a surface, or the density of an event in a medium, times the probability of coming so far.
     pub(crate) forward: f32,
-    /// The same at the start, without the cosine at a surface, which the subpath has counted when it left.
+    /// At the start: likewise, but without the cosine at a surface, which the subpath has counted when it left.
     pub(crate) back: f32,
 }
 
@@ -133,7 +133,7 @@ impl<const N: usize> Partial<N> {
         (self.merged * sine + self.before(pdf_back)) * pdf_area
     }
 
-    /// The same where the vertex on the other side is on a light.
+    /// Sum of [`Partial::others`] where the vertex on the other side is on a light.
     pub(crate) fn others_of_direct(
         &self,
         pdf_area: f32,
@@ -148,13 +148,13 @@ impl<const N: usize> Partial<N> {
         (found + self.connected + (self.d_vc + self.except_direct) * pdf_back) * pdf_area
     }
 
-    /// How often these find the vertex, where `merged` is how often merging does.
+    /// Frequency with which the techniques of `direct` find the vertex, where `merged` is how often merging does.
     fn found(&self, merged: PerSet<N>, direct: DirectLight) -> PerSet<N> {
         let counted = |counts: PerSet<N>, is_one| if is_one { counts } else { PerSet::ZERO };
         counted(merged, direct.merges) + counted(self.splatted, direct.splats)
     }
 
-    /// The same over the density of finding this vertex, without merging here.
+    /// Sum of [`Partial::others`] over the density of finding this vertex, without merging here.
     pub(crate) fn before(&self, pdf_back: f32) -> PerSet<N> {
         self.connected + self.splatted + (self.d_vc + self.except_direct) * pdf_back
     }

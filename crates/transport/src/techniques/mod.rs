@@ -25,7 +25,7 @@ pub(crate) struct TechniqueCounts<const N: usize = 1> {
     /// η: light subpaths that a merged vertex counts, times the area of merging.
     /// All of them count as independent, although they share one camera subpath [Grittmann 2021]: see docs/adr/0012-both-ends.md.
     pub(crate) eta: PerSet<N>,
-    /// The same for beams that cross in a medium: light subpaths whose beams are kept, times the width of merging, in metres.
+    /// η of beams that cross in a medium: light subpaths whose beams are kept, times the width of merging, in metres.
     pub(crate) beams: PerSet<N>,
     /// Media of a larger extinction in any channel, per metre, have points in place of beams: light subpaths have many short ones there.
     pub(crate) densest: f32,
@@ -68,14 +68,14 @@ impl DirectLight {
 /// not sampled.
 pub(crate) const NO_LIGHT: u16 = u16::MAX;
 
-/// What one technique contributes for one path.
+/// Contribution of one technique for one path.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contribution<const N: usize = 1> {
-    /// Its light, over the density with which one camera subpath finds it by this technique.
+    /// Light of the path, over the density with which one camera subpath finds it by this technique.
     pub(crate) light: Rgb,
-    /// How often this technique finds it.
+    /// Frequency with which this technique finds it.
     pub(crate) own: PerSet<N>,
-    /// How often all other techniques find it.
+    /// Frequency with which all other techniques find it.
     pub(crate) others: PerSet<N>,
     /// A factor on its weight, for the sake of the other technique that a camera subpath has for finding a light:
     /// [`power_factor`].
@@ -100,7 +100,7 @@ pub(crate) enum Technique {
 pub(crate) enum Step {
     /// A ray of a light subpath, and the work where it arrives.
     Light,
-    /// The same for a camera subpath.
+    /// A ray of a camera subpath, and the work where it arrives.
     Camera,
     /// A vertex of a light subpath is connected with the camera.
     Seen,
@@ -110,7 +110,7 @@ pub(crate) enum Step {
     Connected,
     /// Photons around a vertex are looked up.
     Lookup,
-    /// The same for beams across a ray.
+    /// Beams across a ray are looked up.
     Across,
 }
 
@@ -223,8 +223,8 @@ impl<const N: usize> TechniqueCounts<N> {
         all
     }
 
-    /// How often beams that cross at a right angle count, over both walks having events there, in a channel of a medium of this
-    /// extinction.
+    /// Frequency with which beams that cross at a right angle count, over both walks having events there, in a channel of a
+    /// medium of this extinction.
     #[inline]
     pub(crate) fn crossings(&self, sigma_t: Rgb, channel: u8) -> PerSet<N> {
         let sigma = sigma_t[usize::from(channel)];
@@ -244,7 +244,7 @@ impl<const N: usize> Contribution<N> {
         Contribution { light, own: PerSet::ONE, others: PerSet::ZERO, power_factor: 1.0, origin: NO_LIGHT }
     }
 
-    /// Its MIS weight: the balance heuristic, except for [`power_factor`].
+    /// MIS weight: the balance heuristic, except for [`power_factor`].
     pub(crate) fn mis_weight(&self) -> f32 {
         self.own.0[0] * (self.power_factor / (self.own.0[0] + self.others.0[0]))
     }

@@ -17,7 +17,7 @@ pub(crate) struct Place {
 /// A path from its start to its last vertex.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Way {
-    /// Its optical length, in metres; infinite if it comes from infinity.
+    /// Optical length, in metres; infinite if the path comes from infinity.
     length: f64,
     p: Vec3,
     /// The index of refraction on the side that it came from, over that around its start.
@@ -37,7 +37,7 @@ impl Way {
         Way { length: f64::INFINITY, ..Way::from(p) }
     }
 
-    /// Its optical length so far, in metres.
+    /// Optical length so far, in metres.
     pub(crate) fn length(&self) -> f64 {
         self.length
     }
@@ -53,14 +53,14 @@ impl Way {
         }
     }
 
-    /// Its length on to a point along its next ray.
+    /// Optical length up to a point along its next ray.
     pub(crate) fn length_to(&self, p: Vec3) -> f64 {
         let on = p - self.p;
         self.length + f64::from(on.length()) * self.index_towards(on)
     }
 
-    /// Its length on to a point along its next ray, or its last vertex, and from there on in a direction for this distance; infinite without
-    /// one.
+    /// Optical length up to a point along its next ray, or its last vertex, and from there on in a direction for this distance;
+    /// infinite without one.
     pub(crate) fn length_by(&self, from: Vec3, direction: Vec3, distance: Option<f32>) -> f64 {
         let ray = if from == self.p { direction } else { from - self.p };
         let on = distance.map_or(f64::INFINITY, |distance| f64::from(distance) * self.index_towards(ray));
@@ -77,11 +77,11 @@ impl Way {
 /// Intervals of optical length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LengthBins {
-    /// Where the first one begins, in metres.
+    /// Start of the first interval, in metres.
     pub begin: f64,
-    /// How long each is, in metres.
+    /// Length of each interval, in metres.
     pub width: f64,
-    /// How many there are.
+    /// Number of intervals.
     pub count: u32,
 }
 

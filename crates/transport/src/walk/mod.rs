@@ -20,7 +20,7 @@ pub(crate) struct Walk {
     pub(crate) ray: Ray,
     /// Scattering events so far.
     pub(crate) depth: u32,
-    /// Those of them in media behind surfaces: all, and those in a row up to here.
+    /// Events in media behind surfaces: all, and those in a row up to here.
     inside: [u32; 2],
     /// Throughput: the weight of all events, over their mean density of walks in all channels.
     pub(crate) beta: Rgb,
@@ -30,9 +30,9 @@ pub(crate) struct Walk {
     pub(crate) eta_scale: f32,
     /// True while all events have been delta events: what only the camera sees may still be visible.
     pub(crate) specular: bool,
-    /// It carries a single wavelength.
+    /// Whether it carries a single wavelength.
     pub(crate) is_split: bool,
-    /// Its last vertex is a point of a medium.
+    /// Whether its last vertex is a point of a medium.
     pub(crate) leaves_medium: bool,
     /// The media that the ray travels in.
     pub(crate) media: Media,
@@ -56,13 +56,13 @@ impl Walk {
         }
     }
 
-    /// Its throughput as the colour channels see it, up to here.
+    /// Throughput as the colour channels see it, up to here.
     #[inline]
     pub(crate) fn seen(&self, sample: &SampleState) -> Rgb {
         sample.seen(self.beta, self.is_split)
     }
 
-    /// Its events so far, as far as they limit it.
+    /// Events so far, as far as they limit the path.
     #[inline]
     pub(crate) fn events(&self) -> Events {
         let [inside, in_row] = self.inside;
@@ -111,8 +111,8 @@ impl Walk {
         self.ray = at.spawn(sample.wi);
     }
 
-    /// Its ray, as far as it has to be traced, and its flight to the event that it has at the end unless a surface is before: known
-    /// where its medium is. In milk a walk has hundreds of events and meets no surface for a long time.
+    /// Next ray, as far as it has to be traced, and the flight to the event that the walk has at its end unless a surface is
+    /// before: known where its medium is. In milk a walk has hundreds of events and meets no surface for a long time.
     #[inline]
     pub(crate) fn ahead(
         &mut self,
@@ -186,8 +186,8 @@ impl Walk {
         }
     }
 
-    /// The same walk as if it had an event at this distance, in metres, where [equiangular points](crate::media::equiangular) may be; `None` where
-    /// they may not, or where a surface is before it.
+    /// This walk as if it had an event at this distance, in metres, where [equiangular points](crate::media::equiangular) may be;
+    /// `None` where they may not, or where a surface is before it.
     pub(crate) fn in_fog(
         &self,
         first: Surface,

@@ -17,7 +17,7 @@ pub(crate) struct Segment {
 }
 
 impl Segment {
-    /// What lies along it; `None` where something blocks it.
+    /// Passage along it; `None` where something blocks it.
     #[inline]
     pub(crate) fn passage(&self, tracer: &mut Tracer) -> Option<Passage> {
         self.through.visible(tracer, &self.ray, self.n)

@@ -4,12 +4,12 @@ use crate::media::{Media, Passage};
 use bilux_math::Vec3;
 use bilux_scene::{Ray, Scene, Tracer};
 
-/// What tells, with a ray, which media it leads through.
+/// Media along a line, to be found with the ray along it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Through {
     /// The media at its start.
     pub(crate) media: Media,
-    /// Its length in metres; `None` to what is infinitely far away: beyond the last surface nothing absorbs, since the
+    /// Length of the line in metres; `None` to what is infinitely far away: beyond the last surface nothing absorbs, since the
     /// boundary of what does would have blocked the ray.
     pub(crate) distance: Option<f32>,
     /// The number of panes that it may lead through.
@@ -19,7 +19,7 @@ pub(crate) struct Through {
 }
 
 impl Through {
-    /// What lies along a ray; `None` where something blocks it. `n` is the [normal](Scene::normal_towards) of the surface that
+    /// Passage along a ray; `None` where something blocks it. `n` is the [normal](Scene::normal_towards) of the surface that
     /// the ray ends on at parameter 1; zero where there is none.
     #[inline]
     pub(crate) fn visible(&self, tracer: &mut Tracer, ray: &Ray, n: Vec3) -> Option<Passage> {
@@ -35,7 +35,7 @@ impl Through {
         self.media.hide(scene, Vec3::from(ray.origin) + Vec3::from(ray.direction) * ray.t_max)
     }
 
-    /// What lies along a ray that no surface is on.
+    /// Passage along a ray that no surface is on.
     #[inline]
     pub(crate) fn unoccluded(&self, scene: &Scene, ray: &Ray) -> Passage {
         self.media.unoccluded(scene, ray, self.distance, self.seed)

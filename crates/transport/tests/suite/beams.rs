@@ -83,8 +83,8 @@ fn beams_in_fog_are_found_by_all() {
     }
 }
 
-/// Where fog is dense, light subpaths are kept as points, and merged in balls as wide as the beam. What is lit straight from the lamp is seen from
-/// there, and not merged too.
+/// Light subpaths in dense fog are kept as points, and merged in balls as wide as the beam. What is lit straight from the lamp is
+/// seen from there, and not merged too.
 #[test]
 fn beams_in_dense_fog_are_found_once() {
     let scene = fog_around(spot(6.0), -1.0, 20.0);

@@ -1,4 +1,4 @@
-//! What a scene knows of the bodies that its media are in, before a path is traced.
+//! Bodies that media are in, as a scene knows them before a path is traced.
 
 use crate::common::media::{grid_in, smoke};
 use crate::common::{along, ball, built, put};

@@ -150,7 +150,7 @@ fn dispersive_glass_conserves_every_colour() {
     }
 }
 
-/// What a prism projects on a wall from a distant light: blue on the left, red on the right.
+/// Light that a prism projects on a wall from a distant light: blue on the left, red on the right.
 fn on_a_wall(light_spec: Spec, glass: Spec, dispersion: f32) -> Scene {
     let mut builder = SceneBuilder::default();
     let glass = glass.with("eta", 1.4f32).with("dispersion", dispersion);

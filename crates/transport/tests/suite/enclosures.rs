@@ -1,4 +1,4 @@
-//! What is known of the boundary of a medium before a ray is traced saves work, and changes no bit of a picture.
+//! Knowledge of the boundary of a medium before a ray is traced saves work, and changes no bit of a picture.
 
 use crate::common::media::{any, boxed, grid_in, smoke};
 use crate::common::{built, diffuse, floor, integrator, look, put, shoot, sky};
@@ -7,7 +7,7 @@ use bilux_scene::{Mesh, SceneBuilder, Spec};
 use bilux_transport::RenderSettings;
 use std::sync::Arc;
 
-/// The same box with a triangle of no area along an edge: no ray hits it, but the mesh does not count as closed.
+/// This box with a triangle of no area along an edge: no ray hits it, but the mesh does not count as closed.
 fn opened(mesh: &Mesh) -> Arc<Mesh> {
     let mut mesh = mesh.clone();
     let [a, b, _] = mesh.triangles[0];

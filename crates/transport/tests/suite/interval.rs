@@ -1,4 +1,4 @@
-//! How often the error that is stated for a picture is true.
+//! Frequency with which the error that is stated for a picture is true.
 
 use crate::common::statistics::{SUITE, estimate};
 use crate::common::{ball, built, diffuse, effort, floor, integrator, look, put, shoot};
@@ -113,7 +113,7 @@ fn nineteen_of_twenty_intervals_hold_the_truth() {
 /// So few samples that their even distribution makes most of the difference.
 const FEW: u32 = 16;
 
-/// What one would estimate from the samples of a plain picture, by treating runs of its one sequence as independent.
+/// Estimates from the samples of a plain picture, with runs of its one sequence treated as independent.
 fn as_if_independent(scene: &Scene, integrator: &dyn PixelIntegrator, seed: u64) -> Vec<Estimate> {
     let run = |k: u32| {
         let samples = k * FEW / REPLICATES..(k + 1) * FEW / REPLICATES;
@@ -191,7 +191,7 @@ fn deterministic_integrators_have_no_interval() {
     }
 }
 
-/// How far means over many seeds are from the truth, block by block, in standard errors of these means: the largest
+/// Distance of means over many seeds from the truth, block by block, in standard errors of these means: the largest
 /// deviation, as the probability of one at least as large. [Šidák 1967]
 fn agreement_with(truth: &Interval, blocks: &[Vec<f64>]) -> f64 {
     let least = |(window, means): (Window, &Vec<f64>)| {

@@ -1,4 +1,4 @@
-//! What holds in every medium, whatever its shape and however it scatters: the mean length of walks through it, and that camera and
+//! Invariants of every medium, whatever its shape and however it scatters: the mean length of walks through it, and that camera and
 //! lamp can be exchanged.
 
 use crate::common::media::{any, boxed, grid_in, smoke};
@@ -30,7 +30,7 @@ fn directions(count: usize) -> impl Iterator<Item = Vec3> {
     })
 }
 
-/// What the box takes of the light that falls on it from everywhere, over all directions, per radiance: the light that is missing in
+/// Light that the box absorbs of what falls on it from everywhere, over all directions, per radiance: the light that is missing in
 /// parallel projections of it, integrated over their area. No light is sampled: what a path brings is what has not been absorbed, with next to
 /// no noise.
 fn absorbed(case: &str, body: &Spec, spp: u32) -> f64 {

@@ -53,7 +53,7 @@ fn a_moving_camera_moves_everything() {
     assert!(middle.distance(Vec2::new(-0.1 * metre, 0.0)) < 0.05, "{middle}: it moves to the left");
 }
 
-/// The same camera a second later, higher by 0.2 m: a point of the floor moves down by what the projection says.
+/// A point of the floor moves down by what the projection says when the camera, a second later, is higher by 0.2 m.
 #[test]
 fn motion_counts_where_the_camera_is_at_either_time() {
     let scene = crate::common::moving().build(&Default::default(), [0.0, 0.5], 1.0).unwrap();
@@ -145,7 +145,7 @@ fn all_labels_of_a_pixel_are_of_one_surface() {
     assert!(counts[1] > 100 && counts[3] > 100 && counts[4] > 100, "{counts:?}");
 }
 
-/// Where the faces of two media coincide, the label is that of the medium that light meets there, whichever face rounding puts
+/// Labels of coincident faces of two media are those of the medium that light meets there, whichever face rounding puts
 /// first, also among faces of the same distance.
 #[test]
 fn labels_of_coincident_faces_are_of_the_stronger_medium() {
@@ -246,7 +246,7 @@ fn flow_and_what_it_hides_are_those_of_known_poses() {
     assert!(counts.iter().all(|count| *count > 50), "{counts:?}");
 }
 
-/// What moves out of the picture is not visible there either; what stands still while nothing moves always is.
+/// A point that moves out of the picture is not visible there either; what stands still while nothing moves always is.
 #[test]
 fn what_leaves_the_picture_counts_as_hidden() {
     let mut builder = SceneBuilder::default();
@@ -357,7 +357,7 @@ fn silhouettes_are_those_of_each_object_alone() {
     assert_eq!(both[1].visible.bounds.unwrap()[1], 0, "what is visible ends with the picture");
 }
 
-/// What runs of columns of this height cover.
+/// Pixels that runs of columns of this height cover.
 fn decoded(runs: &[u32], height: usize) -> Vec<bool> {
     let pixels: Vec<bool> =
         runs.iter().enumerate().flat_map(|(i, run)| std::iter::repeat_n(i % 2 == 1, *run as usize)).collect();

@@ -176,7 +176,8 @@ fn direct_light_is_that_of_one_event() {
     }
 }
 
-/// The same of what paths meet by chance: with the random numbers of a picture of one event, bit for bit but for the steps of films.
+/// Light that paths meet by chance is direct after one event, too: with the random numbers of a picture of one event, bit for bit
+/// but for the steps of films.
 #[test]
 fn what_a_path_meets_by_chance_is_direct_after_one_event() {
     let scene = built(&corner());
@@ -192,7 +193,7 @@ fn what_a_path_meets_by_chance_is_direct_after_one_event() {
     }
 }
 
-/// What is divided in several ways at once is divided in each as by that alone.
+/// Light that is divided in several ways at once is divided in each as by that alone.
 #[test]
 fn groups_and_lengths_together_are_those_of_each_alone() {
     let scene = lit_from(&[[0.0, 2.0, 0.0], [1.5, 1.0, 0.5]]);
@@ -258,7 +259,7 @@ fn the_sky_is_in_its_own_group_wherever_it_is_seen() {
     }
 }
 
-/// What fire emits, L (1 - exp(-σ d)) before black, is in the last group, and no lamp's, whichever integrator finds it.
+/// Light that fire emits, L (1 - exp(-σ d)) before black, is in the last group, and no lamp's, whichever integrator finds it.
 #[test]
 fn fire_is_in_a_group_of_its_own() {
     let mut builder = SceneBuilder::default();

@@ -49,7 +49,8 @@ fn one_of_them_is_chosen_at_a_time() {
     }
 }
 
-/// The same things under one mesh of a dozen balls of 80 triangles each, from close to the floor to far above it, that glow on the outside.
+/// Bodies of [`large_lights`] under one mesh of a dozen balls of 80 triangles each, from close to the floor to far above it, that
+/// glow outside.
 pub(crate) fn mesh_of_lamps(radiance: f32) -> SceneBuilder {
     let mut builder = large_lights();
     builder.lights.clear();

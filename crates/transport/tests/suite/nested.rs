@@ -116,7 +116,7 @@ fn seen_from_above(case: &str, mut builder: SceneBuilder, name: &str) -> f32 {
     mean(case, &builder, name)
 }
 
-/// The same as [`light_through_overlapping_slabs_is_what_fresnel_and_beer_say`] for faces that coincide, whatever the order and the
+/// Coincident faces give the light of [`light_through_overlapping_slabs_is_what_fresnel_and_beer_say`], whatever the order and the
 /// priorities are, and also for a camera in the water.
 #[test]
 fn coincident_faces_are_one_surface() {

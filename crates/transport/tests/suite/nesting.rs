@@ -38,7 +38,7 @@ pub(crate) fn bright_floor() -> SceneBuilder {
     builder
 }
 
-/// What is seen, and by whom.
+/// Light that each integrator sees.
 pub(crate) fn seen(builder: &SceneBuilder, spp: u32) -> Vec<(&'static str, Rgb)> {
     let scene = built(builder);
     let of = |name| {
@@ -88,7 +88,7 @@ fn the_inner_of_two_media_exists_whatever_their_order() {
     assert_seen("outer wins", &builder, passed(&[(OUTER, 1.9)]));
 }
 
-/// The same of blocks that stand somewhere else by themselves: what is inside the other is so where they are placed.
+/// Blocks that stand somewhere else by themselves count where they are placed: there the inner one is inside the other.
 #[test]
 fn the_inner_of_two_placed_media_exists() {
     let wanted = passed(&[(OUTER, 1.3), (INNER, 0.6)]);
@@ -110,7 +110,8 @@ fn the_inner_of_two_placed_media_exists() {
     }
 }
 
-/// What touches the bounds of the other from inside lies within it, too: an upright prism whose edges are in the middle of a block's sides.
+/// An object that touches the bounds of the other from inside lies within it, too: an upright prism whose edges are in the middle
+/// of a block's sides.
 #[test]
 fn what_fills_the_bounds_of_the_other_is_around_it() {
     let corner = |i: usize, y: f32| Vec3::new([1.0, 0.0, -1.0, 0.0][i], y, [0.0, -1.0, 0.0, 1.0][i]);

@@ -13,7 +13,7 @@ use std::f32::consts::PI;
 const TINT: Rgb = Rgb { r: 0.9, g: 0.6, b: 0.2 };
 const SUN: Vec3 = Vec3::new(0.6, -0.8, 0.0);
 
-/// What a pane lets through, with what is reflected within it, by Fresnel's two amplitudes.
+/// Fraction of light that a pane lets through, with what is reflected within it, by Fresnel's two amplitudes.
 fn passed(eta: f32, cos: f32) -> f32 {
     let inside = (1.0 - (1.0 - cos * cos) / (eta * eta)).sqrt();
     let across = (cos - eta * inside) / (cos + eta * inside);

@@ -27,7 +27,7 @@ fn wax_looks_the_same_whether_photons_are_merged_in_it_or_not() {
     assert_unlike_path(&right, &built(&wax(panel, 2.0)), &["vcm"]);
 }
 
-/// Where nothing absorbs, all is as bright as what surrounds it, though balls reach beyond the wax.
+/// Wax that absorbs nothing is as bright as what surrounds it, though balls reach beyond the wax.
 #[test]
 fn white_wax_vanishes_in_a_furnace_by_photons() {
     let mut builder = SceneBuilder::default();

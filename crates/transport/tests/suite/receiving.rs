@@ -1,4 +1,4 @@
-//! What points and plans receive, against closed forms; and what of it comes from each patch of the sky.
+//! Light that points and plans receive, against closed forms; and what of it comes from each patch of the sky.
 
 use crate::common::media::boxed;
 use crate::common::{built, diffuse, floor, integrator, put, quad};
@@ -197,7 +197,7 @@ fn coefficients_know_their_errors() {
     assert!(measured_parts(&under_the_sky(), at, 1, 4).all.iter().all(|part| part.error.is_infinite()));
 }
 
-/// What comes straight is no reflection, through a pane either; what matt walls reflect is nothing else.
+/// Light that comes straight is no reflection, through a pane either; what matt walls reflect is nothing else.
 #[test]
 fn straight_light_is_not_reflected() {
     let pane = |builder: &mut SceneBuilder| {

@@ -88,7 +88,7 @@ fn slab(albedo: f32, tau: f32, phase: &[(&str, f32)], from_above: bool) -> Scene
 const SLABS: &[[f32; 3]] =
     &[[1.0, 0.5, 0.0], [0.9, 2.0, 0.0], [0.9, 2.0, 0.75], [1.0, 2.0, -0.3], [0.5, 2.0, 0.0], [0.9, 8.0, 0.0]];
 
-/// What a slab reflects and passes at normal incidence, by adding and doubling.
+/// Fractions that a slab reflects and passes at normal incidence, by adding and doubling.
 fn reflected_and_passed([albedo, thickness, anisotropy]: [f32; 3]) -> [f64; 2] {
     let [albedo, thickness, anisotropy] = [albedo, thickness, anisotropy].map(f64::from);
     let light = Slab { absorbed: 1.0 - albedo, thickness, anisotropy, eta: 1.0 }.light(24);
@@ -251,7 +251,7 @@ fn light_that_glass_casts_into_fog_is_as_bright_seen_through_the_glass() {
     assert_like_path("glass in fog", &built(&builder), &["vcm", "sppm"]);
 }
 
-/// Where nothing absorbs, all is as bright as what surrounds it.
+/// A medium that absorbs nothing is as bright as what surrounds it.
 #[test]
 fn white_media_vanish_in_a_furnace() {
     let scattering = Rgb::new(1.5, 0.7, 3.0);

@@ -1,4 +1,4 @@
-//! What guides, alpha and mattes know of fog, smoke and murky insides, against closed forms.
+//! Guides, alpha and mattes of fog, smoke and murky insides, against closed forms.
 
 use crate::common::labelled::Labelled;
 use crate::common::{built, diffuse, integrator, look, put, quad};
@@ -38,7 +38,7 @@ fn even() -> Spec {
     spec.with("priority", Value::Integer(1))
 }
 
-/// The same from a grid of ones.
+/// The medium of [`even`] from a grid of ones.
 fn of_ones() -> Spec {
     const SIZE: [usize; 3] = [24, 24, 20];
     let voxel = Vec3::new(8.0, 8.0, 2.0) / Vec3::from(SIZE.map(|n| n as f32));

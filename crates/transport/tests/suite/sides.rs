@@ -64,7 +64,7 @@ fn light_subpaths_that_ignore_backs_are_detected() {
     assert_unlike_path(&right, &wrong, &["light", "bdpt"]);
 }
 
-/// What lies behind the back is visible as if nothing were in front of it, in the shadow that it casts.
+/// Bodies behind the back are visible as if nothing were in front of them, in the shadow that it casts.
 #[test]
 fn a_back_is_invisible_and_casts_a_shadow() {
     let seen = |lid: Arc<Mesh>| {

@@ -46,8 +46,8 @@ fn means(what: &str, scene: &Scene, name: &str, spp: u32) -> [(f64, f64); 3] {
 /// Light that a surface of index 1.5 reflects at once.
 const SPECULAR: f64 = 0.04;
 
-/// The same where light goes nearly straight on at each event, so that it comes far: in a body that is deep and wide enough, which a box of a
-/// few metres is not.
+/// A body has its colour also where light goes nearly straight on at each event, so that it comes far: in a body that is deep and wide
+/// enough, which a box of a few metres is not.
 #[test]
 fn a_deep_body_that_scatters_forwards_has_its_colour() {
     let colour = Rgb::new(0.8, 0.5, 0.2);
@@ -112,7 +112,7 @@ fn a_thin_body_shines_as_a_slab_does() {
     assert!(error < 4e-3 && (mean - wanted).abs() < 3.5 * error + 1e-3, "{mean} ± {error}, not {wanted}");
 }
 
-/// What neither absorbs nor is coloured vanishes in a furnace, whatever it is mixed with.
+/// A body that neither absorbs nor is coloured vanishes in a furnace, whatever it is mixed with.
 #[test]
 fn a_white_body_vanishes_in_a_furnace() {
     let mixed = body(1.0f32, 0.3)
@@ -160,7 +160,7 @@ fn bodies_look_the_same_from_both_ends() {
     assert_unlike_path(&right, &built(&still_life(wax(10.0))), &["path"]);
 }
 
-/// Where the colour varies, each place has its own.
+/// Each place of a body has its own colour, where the colour varies.
 #[test]
 fn a_textured_body_has_the_colour_of_each_place() {
     let colours = [Rgb::new(0.8, 0.6, 0.4), Rgb::new(0.4, 0.6, 0.2)];

@@ -72,7 +72,7 @@ fn longer(mut blocks: Blocks) -> Blocks {
     blocks
 }
 
-/// The same with one technique brighter by this factor.
+/// These blocks with one technique brighter by this factor.
 fn defective(all: &Blocks, strategy: &Strategy, factor: f64) -> Blocks {
     let mut wrong = all.clone();
     wrong.get_mut(strategy).unwrap().iter_mut().flatten().for_each(|sum| *sum *= factor);

@@ -49,7 +49,7 @@ fn assert_is(what: &str, (scene, name): (&Scene, &str), spp: u32, wanted: f64, l
     assert_is_with_roulette(1000, what, (scene, name), spp, wanted, largest);
 }
 
-/// The same with Russian roulette after so many events.
+/// Fails unless the mean is this with Russian roulette after so many events, as [`assert_is`].
 fn assert_is_with_roulette(
     free: i32,
     what: &str,

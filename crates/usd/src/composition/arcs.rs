@@ -1,4 +1,4 @@
-//! What a prim says it is composed with.
+//! Composition arcs of a prim, as it states them.
 
 use super::layers::Layers;
 use super::node::{ArcKind, Node, absolute};
@@ -14,9 +14,9 @@ pub(super) struct Target {
     pub(super) file: Option<PathBuf>,
     /// The prim; empty for the default one.
     pub(super) path: String,
-    /// Its time codes in the layers of the node.
+    /// Map of its time codes to those of the layers of the node.
     pub(super) offset: TimeOffset,
-    /// Where it is named.
+    /// Place where it is named.
     pub(super) at: Span,
 }
 
@@ -28,7 +28,7 @@ const FIELDS: [(&str, ArcKind); 4] = [
     ("specializes", ArcKind::Specialize),
 ];
 
-/// What a node is composed with, the strongest of each kind first.
+/// Arcs and targets that a node is composed with, the strongest of each kind first.
 pub(super) fn targets(node: &Node, layers: &mut Layers) -> Result<Vec<(ArcKind, Target)>, FormatError> {
     let mut all = Vec::new();
     for (field, arc) in FIELDS {

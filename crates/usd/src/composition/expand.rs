@@ -13,7 +13,7 @@ const MAX_CHAIN: usize = 48;
 /// The number of places that are looked at for one prim, and for all: references of references can double them.
 const MAX_PLACES: [usize; 2] = [5_000, 5_000_000];
 
-/// What all places have been brought through beyond what is usual.
+/// Largest number of places that all places may have been brought through, beyond what is usual.
 const MAX_DEEP: usize = 1_000_000;
 
 /// The sites that are being brought in, to find circles.

@@ -30,7 +30,7 @@ pub(crate) struct Layers<'r, 'o, 'b> {
     stack_of: HashMap<u32, u32>,
     /// The places that were brought in for the current prim, and for all.
     pub(super) places: [usize; 2],
-    /// What all of them were brought through beyond what is usual.
+    /// Number of places that all of them were brought through, beyond what is usual.
     pub(super) deep: usize,
     /// The times of the stage for which clips are opened.
     pub(crate) moments: Vec<f64>,

@@ -1,11 +1,11 @@
-//! What several places say about one prim, as a tree: a node is a prim in a stack of layers, and the nodes below it are what it
+//! Opinions of several places about one prim, as a tree: a node is a prim in a stack of layers, and the nodes below it are what it
 //! is composed with.
 
 use super::layers::Layers;
 use crate::value::{Text, TimeOffset};
 use std::sync::Arc;
 
-/// What brought a node in, the strongest first.
+/// Kind of arc that brought a node in, the strongest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum ArcKind {
     Root,
@@ -16,7 +16,7 @@ pub(super) enum ArcKind {
     Specialize,
 }
 
-/// Where a node's paths are in the names of the whole stage.
+/// Mapping of a node's paths to those of the whole stage.
 #[derive(Debug)]
 pub(crate) struct Mapping {
     from: String,
@@ -39,7 +39,7 @@ pub(super) struct Node {
     pub(super) site: Arc<Site>,
     /// Layer and prim there, the strongest first, and what its time codes are on the stage.
     pub(super) specs: Vec<(u32, u32, TimeOffset)>,
-    /// What the time codes of its layers are on the stage.
+    /// Map of the time codes of its layers to those of the stage.
     pub(super) offset: TimeOffset,
     pub(super) arc: ArcKind,
     /// The number of names in the path of the node above when it was brought in: what comes with a prim itself is stronger
@@ -50,7 +50,7 @@ pub(super) struct Node {
     pub(super) chosen: Vec<Text>,
 }
 
-/// What a layer says about a prim of the stage.
+/// Opinion of a layer about a prim of the stage.
 #[derive(Clone, Debug)]
 pub(crate) struct Opinion {
     pub(crate) layer: u32,
@@ -128,7 +128,7 @@ impl Node {
         }
     }
 
-    /// What this node and those below it say about a child; `None` if nothing.
+    /// Node of a child, with what this node and those below it say about it; `None` if nothing.
     pub(super) fn child(&self, name: &Text, layers: &Layers) -> Option<Node> {
         let of = |&(layer, prim, offset): &(u32, u32, TimeOffset)| {
             let child = layers.all[layer as usize].by_name.get(&(prim, name.clone()))?;
@@ -208,7 +208,7 @@ impl Node {
         self.children.sort_by_key(|child| (child.arc, usize::MAX - child.depth));
     }
 
-    /// What all layers say, the strongest first.
+    /// Opinions of all layers, the strongest first.
     pub(super) fn opinions(&self) -> Vec<Opinion> {
         let mut all = Vec::new();
         self.visit(&mut |node: &Node| {
@@ -232,7 +232,7 @@ impl Node {
 }
 
 impl Mapping {
-    /// The same below another one.
+    /// Mapping like this one, below another one.
     fn within(self: &Arc<Mapping>, outermost: &Arc<Mapping>) -> Arc<Mapping> {
         let outer = self.outer.as_ref().map_or_else(|| outermost.clone(), |outer| outer.within(outermost));
         Arc::new(Mapping {

@@ -14,7 +14,7 @@ use std::collections::HashSet;
 pub(crate) struct Prim {
     pub(crate) path: Text,
     pub(crate) type_name: Text,
-    /// What all layers say, the strongest first.
+    /// Opinions of all layers, the strongest first.
     pub(crate) opinions: Vec<Opinion>,
     /// Indices of prims.
     pub(crate) children: Vec<u32>,
@@ -119,7 +119,7 @@ fn names(node: &Node, layers: &Layers) -> Vec<Text> {
     names
 }
 
-/// What a prim says about itself, and not what others are.
+/// True if a prim is defined by what it says about itself, whatever others are.
 fn is_defined(opinions: &[Opinion], layers: &Layers) -> bool {
     let specifiers =
         || opinions.iter().map(|o| layers.all[o.layer as usize].prims[o.prim as usize].specifier);

@@ -37,7 +37,7 @@ struct Light<'a> {
     /// Radiance before it is divided by an area.
     radiance: Rgb,
     is_normalized: bool,
-    /// What makes it emit less in some directions.
+    /// Shaping, by which it emits less in some directions.
     shaping: Option<Shaping>,
 }
 

@@ -18,7 +18,7 @@ const COLUMNS: usize = 72;
 /// The width of the edge of a hard cone, in degrees.
 const HARD: f64 = 1e-3;
 
-/// What shapes a light.
+/// Shaping of a light.
 pub(super) struct Shaping {
     /// The angles from the axis, in radians, at which the cone begins to fade and ends.
     cone: Option<[f64; 2]>,
@@ -35,7 +35,7 @@ struct Profile {
 }
 
 impl Shaping {
-    /// What shapes a light; `None` if nothing does.
+    /// Shaping of a light; `None` if nothing shapes it.
     pub(super) fn read(
         stage: &Stage,
         prim: u32,

@@ -10,7 +10,7 @@ use bilux_import::bytes::xml::Xml;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Where the outermost element of a document begins at the latest, after comments.
+/// Last byte at which the outermost element of a document may begin, after comments.
 const HEAD: usize = 4096;
 
 /// True for documents of MaterialX.

@@ -36,7 +36,7 @@ struct Material<'d> {
     path: String,
     /// Shaders by their names.
     made: HashMap<String, u32>,
-    /// Those whose inputs are still to be read.
+    /// Shaders whose inputs are still to be read.
     waiting: Vec<(u32, Placed<'d>)>,
 }
 
@@ -204,7 +204,7 @@ fn outer<'d>(input: Node<'d, 'd>, graph: Option<Node<'d, 'd>>) -> Option<Node<'d
     graph?.children().find(named)
 }
 
-/// What comes before the names of files: the prefixes of all elements around them, the outermost first.
+/// Prefix of names of files: the prefixes of all elements around them, the outermost first.
 fn prefix(input: Node) -> String {
     let mut all: Vec<&str> =
         input.ancestors().filter_map(|element| element.attribute("fileprefix")).collect();

@@ -1,6 +1,6 @@
 //! Arnold's shaders that MaterialX has too, under other names. [Arnold 7.3, shaders]
 
-/// How their identifiers begin.
+/// Prefix of the identifiers of Arnold's shaders.
 pub(super) const PREFIX: &str = "arnold:";
 
 /// Nodes, and what MaterialX calls them.
@@ -33,13 +33,13 @@ const INPUTS: [(&str, &str); 10] = [
     ("value", "color"),
 ];
 
-/// What MaterialX calls a node with this identifier.
+/// Name in MaterialX of a node with this identifier.
 pub(super) fn node(id: &str) -> Option<&'static str> {
     let name = id.strip_prefix(PREFIX)?;
     NODES.iter().find(|(own, _)| *own == name).map(|(_, other)| *other)
 }
 
-/// What Arnold calls an input.
+/// Name in Arnold of an input.
 pub(super) fn input(name: &str) -> Option<&'static str> {
     INPUTS.iter().find(|(other, _)| *other == name).map(|(_, own)| *own)
 }

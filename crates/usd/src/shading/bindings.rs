@@ -23,7 +23,8 @@ pub(crate) fn bound(stage: &Stage, prim: u32, above: &[u32]) -> Option<u32> {
     })
 }
 
-/// What a prim binds another one to: by a collection that it is in, or by itself.
+/// Material that the prim `at` binds `prim` to, by a collection that `prim` is in, or by itself; and whether it is
+/// stronger than the bindings of prims below.
 fn at_prim(stage: &Stage, at: u32, prim: u32, purpose: &str) -> Option<(Text, bool)> {
     let strength = |name: &str| {
         let strength = stage.metadata(at, name, "bindMaterialAs");

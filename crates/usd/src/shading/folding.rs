@@ -1,11 +1,11 @@
-//! What a network of nodes comes down to: a constant, or what one node gives, times a constant and plus a constant.
+//! Folding of a network of nodes to a constant, or to what one node gives, times a constant and plus a constant.
 
 use super::draft::Draft;
 use super::network::{Input, constant, input, kind};
 use bilux_import::FormatError;
 use bilux_scene::texture::Channel;
 
-/// What the output of a node is.
+/// Folded output of a node.
 #[derive(Clone, Debug)]
 pub(super) enum Folded {
     Constant([f32; 3]),
@@ -26,7 +26,7 @@ pub(super) struct Linear {
 /// Nodes that are looked at for one input.
 const MAX_NODES: usize = 64;
 
-/// What the output of a node comes down to; `None`, with a note, if it is nothing that can be shown.
+/// Folded output of a node; `None`, with a note, if it is nothing that can be shown.
 pub(super) fn folded(draft: &mut Draft, node: u32, output: &str) -> Result<Option<Folded>, FormatError> {
     fold(draft, node, output, &mut MAX_NODES.clone())
 }
@@ -86,7 +86,7 @@ fn fold(draft: &mut Draft, node: u32, output: &str, left: &mut usize) -> Result<
     Ok(None)
 }
 
-/// What an input of a node comes down to.
+/// Folded input of a node.
 fn operand(
     draft: &mut Draft,
     node: u32,

@@ -6,7 +6,7 @@ use crate::value::Text;
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 
-/// What an input of a shader gets.
+/// Source of an input of a shader.
 #[derive(Clone, Debug)]
 pub(super) enum Input {
     Nothing,
@@ -18,7 +18,7 @@ pub(super) enum Input {
 /// Longer chains of connections are circles.
 const MAX_CHAIN: usize = 32;
 
-/// What an attribute gets, through the connections of node graphs.
+/// Source of an attribute, through the connections of node graphs.
 pub(super) fn resolve(
     stage: &Stage,
     prim: u32,
@@ -43,7 +43,7 @@ pub(super) fn resolve(
     Ok(Input::Nothing)
 }
 
-/// What the input of a shader gets; `name` is what MaterialX calls it.
+/// Source of the input of a shader; `name` is what MaterialX calls it.
 pub(super) fn input(
     stage: &Stage,
     shader: u32,

@@ -1,4 +1,4 @@
-//! Where textures lie: the texture coordinates of nodes, and what is done to them.
+//! Placement of textures: the texture coordinates of nodes, and what is done to them.
 
 use super::draft::Draft;
 use super::network::{Input, constant, input, kind};
@@ -17,7 +17,7 @@ pub(super) struct Placing {
 /// Nodes in a row that only move texture coordinates.
 const MAX_CHAIN: usize = 16;
 
-/// Where the texture coordinates of a node come from.
+/// Source of the texture coordinates of a node.
 pub(super) fn placing(draft: &mut Draft, node: u32, is_preview: bool) -> Result<Placing, FormatError> {
     let stage = draft.stage;
     let mut name: Text = "st".into();
@@ -94,7 +94,7 @@ fn turn(degrees: f64) -> DAffine2 {
     DAffine2::from_mat2(DMat2::from_cols_array(&[cos, sin, -sin, cos]))
 }
 
-/// What a node does to texture coordinates; `None` if nothing that is known.
+/// Transform that a node applies to texture coordinates; `None` if none that is known.
 fn own(draft: &mut Draft, node: u32, id: &str) -> Result<Option<DAffine2>, FormatError> {
     if id.starts_with("UsdTransform2d") {
         // Scaled, turned and moved. [UsdPreviewSurface]

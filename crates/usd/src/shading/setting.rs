@@ -28,7 +28,7 @@ impl Draft<'_, '_> {
         }
     }
 
-    /// The same for a number.
+    /// Sets a number by an input: a texture or a constant, times a factor. False if there is none.
     pub(super) fn set_number(&mut self, key: &str, name: &str, factor: f32) -> Result<bool, FormatError> {
         match self.input(name)? {
             Input::Node(node, output) => {

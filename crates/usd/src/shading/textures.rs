@@ -13,7 +13,7 @@ use bilux_scene::Texture;
 use bilux_scene::texture::{Channel, Image, Texels, UvTransform, Wrap};
 use std::sync::Arc;
 
-/// What a parameter takes of a texture.
+/// Use that a parameter makes of a texture.
 #[derive(Clone, Copy)]
 pub(super) struct Taken {
     /// Numbers rather than colours.
@@ -22,7 +22,7 @@ pub(super) struct Taken {
     pub(super) threshold: Option<f32>,
 }
 
-/// What the output of a node gives a parameter.
+/// Texture or constant that the output of a node gives a parameter.
 pub(super) enum Painted {
     Texture(Texture),
     Constant(Rgb),

@@ -1,4 +1,4 @@
-//! What a material says of the inside of volumes: MaterialX's `volume`, and Arnold's `standard_volume`.
+//! Inside of volumes, as a material states it: MaterialX's `volume`, and Arnold's `standard_volume`.
 
 use super::network::{Input, input, kind, resolve};
 use crate::context::Context;
@@ -9,7 +9,7 @@ use bilux_math::Rgb;
 use bilux_math::transcendental::ln_f64;
 use std::f64::consts::E;
 
-/// What fills a volume where its density is 1, per unit of length of the scene.
+/// Medium that fills a volume where its density is 1, per unit of length of the scene.
 #[derive(Clone, Debug)]
 pub(crate) struct Filling {
     pub(crate) absorption: Rgb,
@@ -27,7 +27,7 @@ struct Inputs<'a, 'r, 'o> {
     context: &'a mut Context<'r, 'o>,
 }
 
-/// What a material says of the inside of a volume; `None`, with a note, if it says nothing that is read.
+/// Medium inside a volume, as a material states it; `None`, with a note, if it says nothing that is read.
 pub(crate) fn filling(
     stage: &Stage,
     prim: u32,

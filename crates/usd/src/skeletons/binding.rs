@@ -1,9 +1,9 @@
-//! What prims below a `SkelRoot` are bound to.
+//! Bindings of prims below a `SkelRoot`.
 
 use crate::stage::Stage;
 use bilux_math::DMat4;
 
-/// What a prim is bound to, by itself or by those above it: the prims that state each part.
+/// Binding of a prim, by itself or by those above it: the prims that state each part.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Binding {
     /// The `SkelRoot`, outside of which nothing is bound, and where it is.

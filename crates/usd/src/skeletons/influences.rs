@@ -18,18 +18,18 @@ pub(super) struct Influences {
     weights: Arc<Array>,
     /// Joints of a point, if the file says so.
     each: Option<usize>,
-    /// The same joints move all points; `None` if the file does not say.
+    /// Whether the same joints move all points; `None` if the file does not say.
     is_rigid: Option<bool>,
     /// The matrix of each index.
     joints: Vec<Option<DMat4>>,
-    /// Where the points are when they are bound.
+    /// Transform of the points to where they are when they are bound.
     shape: DMat4,
     /// Blends dual quaternions, not matrices.
     is_dual: bool,
 }
 
 impl Influences {
-    /// Those of a prim; `None` if joints do not move it.
+    /// Influences on a prim; `None` if joints do not move it.
     pub(super) fn read(
         stage: &Stage,
         prim: u32,
@@ -79,14 +79,15 @@ impl Influences {
         Ok(Some(Influences { indices, weights, each, is_rigid, joints, shape, is_dual }))
     }
 
-    /// How all points move from the space of the prim to that of the skeleton, if they move alike.
+    /// Matrix of all points from the space of the prim to that of the skeleton, if they move alike.
     pub(super) fn rigid(&self) -> Option<DMat4> {
         let count = self.indices.len();
         let is_rigid = self.is_rigid.unwrap_or(count == self.each.unwrap_or(1));
         is_rigid.then(|| self.blended(1, count).unwrap_or_default()[0])
     }
 
-    /// How each point moves from the space of the prim to that of the skeleton; `None` if the joints are not those of as many points.
+    /// Matrix of each point from the space of the prim to that of the skeleton; `None` if the joints are not those of as
+    /// many points.
     pub(super) fn of_points(&self, points: usize) -> Option<Vec<DMat4>> {
         let count = self.indices.len();
         let each = if self.is_rigid == Some(true) { 0 } else { self.each.unwrap_or(count / points.max(1)) };

@@ -1,4 +1,4 @@
-//! What deforms a prim.
+//! Deformation of a prim.
 
 use super::binding::Binding;
 use super::blend_shapes;
@@ -19,23 +19,23 @@ use bilux_math::{DMat4, Vec3};
 pub(crate) struct Rig {
     influences: Option<Influences>,
     shapes: Vec<(u32, f64)>,
-    /// Where the skeleton is.
+    /// Placement of the skeleton.
     world: DMat4,
     /// The prims that say all this, except for the prim itself.
     from: Vec<u32>,
 }
 
-/// How the points of a mesh were deformed, for what depends on them.
+/// Deformation of the points of a mesh, for what depends on them.
 #[derive(Default)]
 pub(crate) struct Bent {
     /// By joints, for each point; may be empty.
     matrices: Vec<DMat4>,
-    /// What blend shapes add to the normal of each point; may be empty.
+    /// Vectors that blend shapes add to the normal of each point; may be empty.
     turns: Vec<Vec3>,
 }
 
 impl Rig {
-    /// What deforms a prim; `None` if nothing.
+    /// Rig that deforms a prim; `None` if nothing does.
     pub(crate) fn of(
         stage: &Stage,
         prim: u32,
@@ -67,7 +67,7 @@ impl Rig {
         self.from.iter().flat_map(|&prim| stage.said(prim)).collect()
     }
 
-    /// Where the deformed prim is, given where it would be without.
+    /// Placement of the deformed prim, given that without the rig.
     pub(crate) fn place(&self, own: &DMat4) -> DMat4 {
         match &self.influences {
             // All points move alike: the prim does.

@@ -8,7 +8,7 @@ use crate::value::{Reference, Text, TimeOffset, Value};
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 
-/// What a statement does to a weaker list.
+/// Change that a statement makes to a weaker list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Change {
     Replace,

@@ -1,6 +1,6 @@
 //! The types of attributes, by their names in text.
 
-/// What the values of a type consist of.
+/// Elements that the values of a type consist of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Class {
     Integers,

@@ -54,7 +54,7 @@ pub(super) fn integers(
     Ok(out)
 }
 
-/// The same for integers of 64 bits.
+/// Reads a size and as many integers of 64 bits, packed.
 pub(super) fn long_integers(
     bytes: &mut Bytes,
     count: usize,

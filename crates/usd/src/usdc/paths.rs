@@ -10,7 +10,7 @@ use bilux_import::bytes::budget::Budget;
 /// A path as its parent and its last name.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Path {
-    /// Its own index for the root.
+    /// Index of the parent; for the root, its own index.
     pub(super) parent: u32,
     /// Index of a token: a name, or a chosen variant in braces.
     pub(super) name: u32,

@@ -21,7 +21,7 @@ pub(super) struct Crate<'b> {
     pub(super) paths: Paths,
 }
 
-/// What specs say: fields by their numbers, in lists that end.
+/// Contents of specs: fields by their numbers, in lists that end.
 pub(super) struct Specs {
     /// Token and value.
     pub(super) fields: Vec<(u32, u64)>,

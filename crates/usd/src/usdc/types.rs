@@ -1,6 +1,6 @@
 //! The types of values in crate files, by their numbers.
 
-/// What a value is, and how its numbers are stored.
+/// Kind of a value, and how its numbers are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// Tuples of numbers of this many bytes each.
@@ -31,7 +31,7 @@ pub(super) enum Kind {
     Other,
 }
 
-/// How a number is stored.
+/// Form in which a number is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Stored {
     Bool,

@@ -1,4 +1,4 @@
-//! What all kinds of geometry have.
+//! Attributes that all kinds of geometry have.
 
 use super::document::Look;
 use super::text::{Text, push_number, rgb};
@@ -6,7 +6,7 @@ use bilux_scene::Mesh;
 
 /// Follows the values of what vertices have.
 pub(super) const BY_VERTEX: &str = " (\n        interpolation = \"vertex\"\n    )";
-/// The same for what faces have.
+/// Follows the values of what faces have.
 pub(super) const BY_FACE: &str = " (\n        interpolation = \"uniform\"\n    )";
 
 pub(super) fn extent(mesh: &Mesh, text: &mut Text) {

@@ -37,7 +37,7 @@ pub(super) struct Document<'s> {
     pub(super) end: f64,
 }
 
-/// What a surface has from its material.
+/// Properties that a surface has from its material.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Look {
     /// The material's path; empty where colours alone say all.

@@ -40,7 +40,7 @@ const HOLDS: MaterialSupport = MaterialSupport {
 };
 
 impl Document<'_> {
-    /// What a surface of a material has, whose prim is written on first use. Surfaces whose vertices have colours need a
+    /// Look of a surface of a material, whose prim is written on first use. Surfaces whose vertices have colours need a
     /// material of their own, which shows these.
     pub(super) fn look(
         &mut self,
@@ -139,7 +139,7 @@ impl Document<'_> {
         Ok(base)
     }
 
-    /// What is reflected at the surface, and at a coat on it.
+    /// Adds what is reflected at the surface, and at a coat on it.
     fn reflection(&mut self, draft: &mut Draft, writing: &mut Writing) -> Result<(), FormatError> {
         let spec = draft.spec;
         self.number_of(draft, "specular_roughness", "roughness", 0.3, writing)?;
@@ -230,7 +230,7 @@ impl Document<'_> {
     }
 }
 
-/// What a boundary of this index reflects at normal incidence.
+/// Reflectance of a boundary of this index at normal incidence.
 fn at_normal_incidence(ior: f32) -> f32 {
     let root = (ior - 1.0) / (ior + 1.0);
     root * root

@@ -59,7 +59,7 @@ impl Document<'_> {
         Ok(())
     }
 
-    /// What belongs to an object rather than to its mesh.
+    /// Writes what belongs to an object rather than to its mesh.
     fn own(&mut self, object: &Object, look: &Look, text: &mut Text, writing: &mut Writing) {
         if !look.path.is_empty() {
             text.line(&format!("rel material:binding = <{}>", look.path));

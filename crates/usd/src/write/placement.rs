@@ -1,4 +1,4 @@
-//! Where prims are: a matrix, or operations with samples of time.
+//! Placement of prims: a matrix, or operations with samples of time.
 
 use super::document::{Document, RATE};
 use super::text::{Text, matrix, tuple};

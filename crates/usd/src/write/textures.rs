@@ -13,7 +13,7 @@ use bilux_scene::Texture;
 use bilux_scene::texture::{Channel, Filter, Texels, UvTransform, Wrap};
 use std::sync::Arc;
 
-/// What the texels of a texture are to its input.
+/// Meaning of the texels of a texture to its input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Meaning {
     Colours,

@@ -116,7 +116,7 @@ pub fn blackbody(kelvin: f32) -> Rgb {
     of_unit_luminance(observed(emitted))
 }
 
-/// What a black body emits at a wavelength in nm and a temperature in kelvin, in W/(m² sr nm). [Wyszecki 1982]
+/// Spectral radiance of a black body at a wavelength in nm and a temperature in kelvin, in W/(m² sr nm). [Wyszecki 1982]
 pub fn planck(wavelength: f64, kelvin: f64) -> f64 {
     // 2hc² in W m², for metres as for nanometres, and hc/k in nm K.
     const FIRST_RADIATION: f64 = 1.191_042_972e-16;

@@ -59,9 +59,9 @@ pub(super) struct Part {
     data: Data,
     start: u64,
     length: u64,
-    /// How far it has been read.
+    /// Place in the part at which reading goes on.
     at: u64,
-    /// What was fetched, and the place of its first byte in the part.
+    /// Bytes that were fetched, and the place of the first of them in the part.
     fetched: Vec<u8>,
     first: u64,
 }

@@ -66,7 +66,7 @@ impl Archive {
         self.data.bytes_held() + self.index.bytes_held()
     }
 
-    /// Its members in the order of the archive.
+    /// Members in the order of the archive.
     pub fn members(&self) -> &[Member] {
         self.index.members()
     }

@@ -10,7 +10,7 @@ use tar::Archive;
 /// The first bytes of a gzip file.
 const GZIP: [u8; 2] = [0x1f, 0x8b];
 
-/// What stands in the first block of every tar file, and where.
+/// Bytes in the first block of every tar file, and their place there.
 const MAGIC: (&[u8], usize) = (b"ustar", 257);
 
 /// True if the bytes begin as tar files do, after decompression.

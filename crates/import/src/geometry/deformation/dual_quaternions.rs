@@ -19,7 +19,7 @@ impl Motion {
         scale: DVec3::ZERO,
     };
 
-    /// That of a matrix, whose shear is lost.
+    /// Motion of a matrix, whose shear is lost.
     fn of(matrix: &DMat4) -> Motion {
         let axes = DMat3::from_mat4(*matrix);
         let side = if axes.determinant() < 0.0 { -1.0 } else { 1.0 };
@@ -45,7 +45,7 @@ pub struct DualBlends {
     sums: Vec<f64>,
 }
 
-/// How a joint moves, to be added to many vertices.
+/// Motion of a joint, to be added to many vertices.
 pub struct DualJoint(Motion);
 
 impl DualJoint {

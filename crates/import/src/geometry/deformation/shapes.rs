@@ -1,8 +1,8 @@
 //! Blend shapes with shapes in between.
 
-/// How much there is of each shape, given what the channel is at where each is reached alone: the channel runs in straight lines
-/// from none, at 0, to the nearest shape and from one to the next, and on beyond the last one. Below 0 it does so through the shapes
-/// there, or else away from the first one. Shapes that are reached at 0 are not used.
+/// Amount of each shape at a value of the channel; `reached` is the value at which each shape is there alone. The channel runs in
+/// straight lines from no shape, at 0, to the nearest one, from one to the next, and on beyond the last one. Below 0 it runs
+/// through the shapes there or, if there are none, away from the first one. Shapes that are reached at 0 are not used.
 pub fn amounts(reached: &[f64], channel: f64) -> Vec<f64> {
     let mut amounts = vec![0.0; reached.len()];
     let mut order: Vec<usize> = (0..reached.len()).filter(|&shape| reached[shape] != 0.0).collect();

@@ -6,13 +6,13 @@ use bilux_scene::{Mesh, Span, Texture};
 /// The surfaces that a map moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Moved {
-    /// Those with this material.
+    /// Surfaces with this material.
     Material(usize),
     /// One object.
     Object(usize),
 }
 
-/// What the values of a map mean.
+/// Directions along which the values of a map move points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Along {
     /// Heights, along the normal.
@@ -28,7 +28,7 @@ pub enum Along {
 pub struct Displacement {
     pub map: Texture,
     pub along: Along,
-    /// How far a value of 1 more moves a point, in lengths of the mesh.
+    /// Distance that a value larger by 1 moves a point further, in units of the mesh.
     pub scale: f32,
     /// The value that leaves points where they are.
     pub middle: f32,

@@ -21,9 +21,9 @@ pub struct Cage {
     pub(super) layers: Vec<Layer>,
     /// The group of each polygon, which the polygons made of it share.
     pub(super) groups: Vec<u32>,
-    /// How many levels an edge stays sharp, by its points.
+    /// Number of levels for which an edge stays sharp, by the edge's points.
     creases: HashMap<[u32; 2], f64>,
-    /// The same of points.
+    /// Number of levels for which a point stays sharp, by point.
     pub(super) corner_sharpness: HashMap<u32, f64>,
     /// True if a point of a single polygon is a corner.
     pub(super) sharp_corners: bool,
@@ -34,7 +34,7 @@ pub struct Cage {
 /// More are not kept for one cage.
 pub(super) const LAYER_LIMIT: usize = 4;
 
-/// What of a mesh the values are.
+/// Attribute of a mesh to which the values of a layer belong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Attribute {
     Uv,
@@ -103,7 +103,7 @@ impl Cage {
         }
     }
 
-    /// The same for a point.
+    /// Makes a point sharp for this many levels; infinity keeps it sharp.
     pub fn sharpen(&mut self, point: u32, sharpness: f32) {
         if sharpness > 0.0 {
             self.corner_sharpness.insert(point, f64::from(sharpness));
@@ -115,7 +115,7 @@ impl Cage {
         self.sharp_corners = false;
     }
 
-    /// The same, with the places where pbrt puts points of the border in the end.
+    /// Rounds the corners of the border, and lets its points end up where pbrt puts them.
     pub fn round_borders_as_pbrt(&mut self) {
         self.sharp_corners = false;
         self.border_side = 0.2;
@@ -157,7 +157,7 @@ impl Cage {
         Edges::new(&self.corners, &self.ends)
     }
 
-    /// How many levels an edge stays sharp.
+    /// Number of levels for which an edge stays sharp.
     pub(super) fn sharpness(&self, edge: &Edge) -> f64 {
         if edge.polygons != 2 {
             return f64::INFINITY;
@@ -183,7 +183,7 @@ impl Cage {
         self.polygons().map(middle).collect()
     }
 
-    /// What surrounds each point.
+    /// Ring of neighbours around each point.
     fn rings(&self, edges: &Edges, middles: &[Value]) -> Vec<Ring> {
         let mut rings = vec![Ring::default(); self.values.len()];
         for edge in &edges.all {
@@ -222,12 +222,12 @@ impl Cage {
         rings
     }
 
-    /// The same surface with about four times as many polygons.
+    /// Cage of the same surface with about four times as many polygons.
     pub fn refined(&self) -> Cage {
         self.refined_by(&self.edges(), self.scheme)
     }
 
-    /// The same, with the edges of its polygons, which are divided as those of a scheme.
+    /// Refined cage, from the edges of this one, whose polygons are divided as those of the scheme `division`.
     fn refined_by(&self, edges: &Edges, division: Scheme) -> Cage {
         let middles = self.middles();
         let rings = self.rings(edges, &middles);
@@ -298,7 +298,7 @@ impl Cage {
         self.limit_by(&self.edges())
     }
 
-    /// The same, with the edges of its polygons.
+    /// Places of all points on the surface itself as in `limit`, from the edges of its polygons.
     fn limit_by(&self, edges: &Edges) -> Vec<Value> {
         if self.scheme == Scheme::CatmullClark && self.polygons().any(|face| face.len() != 4) {
             return self.values.clone();
@@ -318,7 +318,7 @@ impl Layer {
         Layer { cage, groups: self.groups.clone(), attribute: self.attribute }
     }
 
-    /// Its values on the surface, with the edges of the surface.
+    /// Values of the layer on the surface, from the edges of the surface.
     pub(super) fn limit(&self, edges: &Edges) -> Vec<Value> {
         self.cage.limit_by(&edges.of_layer(&self.cage.corners))
     }

@@ -14,7 +14,7 @@ pub(super) struct Edges {
 /// An edge between two points.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
-    /// Its points, as its first polygon runs through them.
+    /// Points of the edge, as its first polygon runs through them.
     pub(super) ends: [u32; 2],
     /// The corners of the first two polygons that begin it.
     pub(super) corners: [u32; 2],
@@ -61,8 +61,7 @@ impl Edges {
         edges
     }
 
-    /// The same edges between other points of the corners: where the two polygons of an edge have different ones, it
-    /// becomes two.
+    /// Edges of a layer, whose corners have other points: an edge whose two polygons have different points there becomes two.
     pub(super) fn of_layer(&self, corners: &[u32]) -> Edges {
         let mut edges = Edges {
             all: Vec::with_capacity(self.all.len()),

@@ -1,4 +1,4 @@
-//! What corners have that goes its own way over the surface, such as texture coordinates: values with seams between them.
+//! Layers: values of corners that go their own way over the surface, such as texture coordinates, with seams between them.
 //! [OpenSubdiv, Face-Varying Interpolation Rules]
 
 use super::cage::{Attribute, Cage, LAYER_LIMIT, Layer};
@@ -7,7 +7,7 @@ use super::rules::Scheme;
 use bilux_math::Vec3;
 use std::collections::{HashMap, HashSet};
 
-/// Where values are linear rather than smooth. Each rule adds to the one before.
+/// Places where values are linear rather than smooth. Each rule adds to the one before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Linear {
     /// Seams and borders are smooth curves.

@@ -104,7 +104,7 @@ fn add(mesh: &mut Mesh, attribute: Attribute, value: Vec3) {
     }
 }
 
-/// What tells vertices apart: their points in the surface and in its layers, and their side of sharp edges.
+/// Key by which vertices differ: their points in the surface and in its layers, and their side of sharp edges.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 struct Key {
     point: u32,

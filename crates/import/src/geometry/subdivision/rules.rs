@@ -1,11 +1,11 @@
-//! What a point of the next level is made of.
+//! Rules that make the points of the next level.
 
 use bilux_math::DVec3;
 use bilux_math::transcendental::cos_f64;
 use std::f64::consts::TAU;
 use std::ops::{Add, Mul};
 
-/// How a surface follows from its cage.
+/// Scheme by which a surface follows from its cage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scheme {
     /// Of any polygons, smooth. [Catmull 1978]
@@ -32,7 +32,7 @@ impl Scheme {
     }
 }
 
-/// What is smoothed: a position and a colour.
+/// Value that is smoothed: a position and a colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Value {
     pub(super) position: DVec3,
@@ -66,7 +66,7 @@ impl Sum {
     }
 }
 
-/// What surrounds a point.
+/// Ring of neighbours around a point.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Ring {
     /// The points at the other ends of its edges.
@@ -77,11 +77,11 @@ pub(super) struct Ring {
     pub(super) opposite: Sum,
     /// The points at the other ends of edges that are sharp.
     pub(super) sharp: Sum,
-    /// The same of edges that are still sharp at the next level.
+    /// Points at the other ends of edges that are still sharp at the next level.
     pub(super) sharper: Sum,
     /// The sharpness of those that are not, in total, and how many there are.
     pub(super) fading: (f64, f64),
-    /// Its own sharpness.
+    /// Sharpness of the point itself.
     pub(super) sharpness: f64,
 }
 
@@ -100,7 +100,7 @@ impl Ring {
         now * share + next * (1.0 - share)
     }
 
-    /// Where the point ends up; on a crease each of its neighbours has the weight `side`.
+    /// Limit of the point; on a crease each of its neighbours has the weight `side`.
     pub(super) fn limit(&self, scheme: Scheme, own: Value, side: f64) -> Value {
         if scheme == Scheme::Bilinear || self.edges.count == 0.0 {
             return own;

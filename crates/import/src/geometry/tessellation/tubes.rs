@@ -53,7 +53,7 @@ pub fn tube(spine: &[(DVec3, DVec3)], widths: [f64; 2], around: u32) -> Mesh {
     tube_of_widths(spine, |i| width_at(widths, i, spine.len()).1, around)
 }
 
-/// The same with a width at each point of the spine.
+/// Rings as those of [`tube`], with a width at each point of the spine.
 pub fn tube_of_widths(spine: &[(DVec3, DVec3)], width_of: impl Fn(usize) -> f64, around: u32) -> Mesh {
     let mut mesh = Mesh { name: "curve".to_owned(), ..Mesh::default() };
     let mut side = spine.first().map_or(DVec3::X, |(_, direction)| direction.any_orthonormal_vector());

@@ -1,6 +1,6 @@
 //! The layers of a mesh: something for each corner, polygon or control point, by an index or without.
 
-/// What the elements of a layer belong to.
+/// Parts of a mesh to which the elements of a layer belong.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mapping {
     #[default]
@@ -48,7 +48,7 @@ impl<T: Copy> Layer<T> {
         &mut self.values
     }
 
-    /// What a corner of a polygon at a control point has.
+    /// Value at a corner of a polygon at a control point.
     #[inline]
     pub fn at(&self, corner: usize, polygon: usize, position: usize) -> Option<T> {
         let element = match self.mapping {

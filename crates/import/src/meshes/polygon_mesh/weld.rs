@@ -75,7 +75,7 @@ struct Made {
     next: u32,
 }
 
-/// What a corner has besides its position.
+/// Attributes of a corner besides its position.
 #[derive(Clone, Copy, PartialEq)]
 struct Attributes {
     normal: Vec3,
@@ -186,7 +186,7 @@ impl Welder {
         vertex
     }
 
-    /// What a corner of a polygon at a control point has.
+    /// Attributes of a corner of a polygon at a control point.
     #[inline]
     fn attributes(&self, corner: usize, polygon: usize, position: usize) -> Attributes {
         let geometry = &self.geometry;
@@ -198,7 +198,7 @@ impl Welder {
     }
 }
 
-/// What vertices have of a layer, which is given up if they are the last ones.
+/// Values of a layer at vertices; the layer is given up if they are the last ones.
 fn of_vertices<T: Copy>(layer: &mut Layer<T>, made: &[Made], missing: T, is_last: bool) -> Vec<T> {
     if layer.is_empty() {
         return Vec::new();

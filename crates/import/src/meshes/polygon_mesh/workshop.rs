@@ -1,9 +1,9 @@
-//! What reading meshes needs besides the meshes.
+//! Budget, oddities and options for reading meshes.
 
 use crate::bytes::budget::Budget;
 use crate::input::oddities::Oddities;
 
-/// What a reader of meshes needs besides the mesh.
+/// Budget, oddities and crease angle that a reader of meshes needs besides the mesh.
 pub struct Workshop<'r> {
     pub budget: &'r mut Budget,
     pub oddities: &'r mut Oddities,

@@ -1,10 +1,10 @@
-//! What the formats share: a lens measured in pixels, and where it stands.
+//! Cameras as the formats share them: a lens measured in pixels, and where it stands.
 
 use crate::FormatError;
 use bilux_math::{DMat3, DVec3};
 use bilux_scene::{Span, Spec, Value};
 
-/// How far the numbers of a rotation may be from one, since files round them.
+/// Largest difference of R Rᵀ from the identity for a rotation R, since files round its numbers.
 const ROUNDING: f64 = 1e-3;
 
 /// The models that files name.
@@ -88,7 +88,7 @@ impl Lens {
     }
 }
 
-/// Where a camera is, and its axes in the world: to the right, downwards and forwards.
+/// Position of a camera, and its axes in the world: to the right, downwards and forwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pose {
     position: DVec3,
@@ -96,13 +96,13 @@ pub(super) struct Pose {
 }
 
 impl Pose {
-    /// That of a camera by the rotation and translation that take points of the world to OpenCV's axes.
+    /// Pose of a camera by the rotation and translation that take points of the world to OpenCV's axes.
     pub(super) fn of_world_to_camera(rotation: DMat3, shift: DVec3, at: &Span) -> Result<Pose, FormatError> {
         let to_world = rotated(rotation, at)?.transpose();
         Ok(Pose { position: -(to_world * shift), axes: [to_world.x_axis, to_world.y_axis, to_world.z_axis] })
     }
 
-    /// That of a camera by its place in the world, with OpenGL's axes: y upwards, z backwards.
+    /// Pose of a camera by its place in the world, with OpenGL's axes: y upwards, z backwards.
     pub(super) fn of_camera_to_world(axes: DMat3, position: DVec3, at: &Span) -> Result<Pose, FormatError> {
         let axes = rotated(axes, at)?;
         Ok(Pose { position, axes: [axes.x_axis, -axes.y_axis, -axes.z_axis] })

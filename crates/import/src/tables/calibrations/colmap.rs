@@ -25,7 +25,7 @@ pub(super) const BINARY: CalibrationFormatEntry = CalibrationFormatEntry {
     read: |reading, source| read(reading, source, "bin", [binary_cameras, binary_images]),
 };
 
-/// What one of the files says: lenses by their numbers, or pictures.
+/// Contents of one of the files: lenses by their numbers, or pictures.
 #[derive(Default)]
 struct Found {
     lenses: HashMap<u32, (Lens, Span)>,

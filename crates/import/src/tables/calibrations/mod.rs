@@ -37,7 +37,7 @@ pub struct CalibratedCameras {
     pub are_placed: bool,
     /// Whether it only says how they stand to the first of them, which is then at the origin and looks along -z, with y upwards.
     pub are_relative: bool,
-    /// What the file says and is not used, in sentences.
+    /// Sentences on what the file says and is not used.
     pub warnings: Vec<String>,
 }
 

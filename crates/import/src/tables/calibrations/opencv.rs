@@ -22,7 +22,7 @@ pub(super) const FORMAT: CalibrationFormatEntry = CalibrationFormatEntry {
     read,
 };
 
-/// What programs and tutorials call the same things; letters' case, underlines and hyphens do not count.
+/// Names of the same things in programs and tutorials; letters' case, underlines and hyphens do not count.
 const MATRIX: &[&str] = &["cameramatrix", "intrinsicmatrix", "intrinsics", "k", "mtx", "m"];
 const COEFFICIENTS: &[&str] =
     &["distortioncoefficients", "distortioncoeffs", "distcoeffs", "distcoeff", "distortion", "dist", "d"];

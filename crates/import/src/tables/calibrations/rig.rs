@@ -1,4 +1,4 @@
-//! How the cameras of a rig stand to each other, as Kalibr and OpenCV's stereo calibration write it.
+//! Poses of the cameras of a rig relative to each other, as Kalibr and OpenCV's stereo calibration write them.
 
 use super::CalibratedCameras;
 use super::camera::Pose;

@@ -17,12 +17,12 @@ impl<'a> Bytes<'a> {
         Bytes { bytes, at: 0, file }
     }
 
-    /// How many bytes lie before this place.
+    /// Number of bytes before this place.
     pub fn at(&self) -> usize {
         self.at
     }
 
-    /// How many bytes follow.
+    /// Number of bytes that follow.
     pub fn left(&self) -> usize {
         self.bytes.len() - self.at
     }
@@ -41,7 +41,7 @@ impl<'a> Bytes<'a> {
         }
     }
 
-    /// The same place in a file that ends at a byte, at the latest.
+    /// Bytes from the same place of a file that ends at the byte `end`, at the latest.
     pub fn until(&self, end: u64) -> Bytes<'a> {
         let end = usize::try_from(end).unwrap_or(usize::MAX).clamp(self.at, self.bytes.len());
         Bytes { bytes: &self.bytes[..end], ..*self }

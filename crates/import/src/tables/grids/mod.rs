@@ -34,7 +34,7 @@ pub static GRID_FORMATS: &[GridFormatEntry] = &[vdb::OPEN, vdb::NANO, npy::FORMA
 pub struct GridFormatEntry {
     /// True if the bytes look like this format.
     pub sniff: fn(&[u8]) -> bool,
-    /// What is in a file.
+    /// Lists the grids of a file.
     pub list: fn(&Source) -> Result<Catalogue, FormatError>,
     /// Reads a grid of the catalogue.
     pub read: fn(&Source, &Listed, &mut Budget) -> Result<Volume, FormatError>,
@@ -56,7 +56,7 @@ pub struct Catalogue {
 /// A grid of a file that is not read yet.
 #[derive(Clone, Debug)]
 pub struct Listed {
-    /// Its name in the file; empty in formats without names.
+    /// Name of the grid in the file; empty in formats without names.
     pub name: String,
     /// Which of the file's grids it is.
     pub index: usize,
@@ -70,7 +70,7 @@ pub struct Listed {
 #[derive(Debug)]
 pub struct Volume {
     pub grid: Grid,
-    /// Where its values may differ from 0, in voxels.
+    /// Box of the values that may differ from 0, in voxels.
     pub bounds: Aabb,
     pub faults: Faults,
     /// The value of all that the file does not list.
@@ -83,7 +83,7 @@ pub struct Volume {
 pub const COLOURS: [&str; 3] = ["red", "green", "blue"];
 
 impl Volume {
-    /// What is wrong with its numbers, a sentence for each kind.
+    /// Faults of the numbers, a sentence for each kind.
     pub fn complaints(&self) -> Vec<String> {
         let Faults { negative, not_finite } = self.faults;
         let mut all = Vec::new();
@@ -108,13 +108,13 @@ impl Volume {
 /// A grid of a file, as [`read_grids`] gives it.
 #[derive(Debug)]
 pub struct GridOfFile {
-    /// Its name in the file; that of the file in formats without names.
+    /// Name of the grid in the file; that of the file in formats without names.
     pub name: String,
     /// The grid, or why it cannot be a density.
     pub grid: Result<Grid, String>,
-    /// Where values may differ from 0, in voxels of the grid.
+    /// Box of the values that may differ from 0, in voxels of the grid.
     pub bounds: Aabb,
-    /// What is wrong with its numbers.
+    /// Faults of the numbers, in sentences.
     pub warnings: Vec<String>,
 }
 
@@ -228,7 +228,7 @@ impl Reading<'_> {
         Ok(has)
     }
 
-    /// The same, or why there is no such grid in the file.
+    /// Grid of a file as in [`Reading::grid`], or why there is no such grid in the file.
     pub fn grid_if_there(
         &mut self,
         folder: Option<&Path>,

@@ -30,7 +30,7 @@ pub const ENTRY: SceneFormatEntry = SceneFormatEntry {
 
 /// The optical thickness of the densest straight way along an axis.
 const THICKNESS: f32 = 12.0;
-/// How much of the light that it meets the smoke scatters.
+/// Single-scattering albedo of the smoke.
 const ALBEDO: f32 = 0.98;
 /// The largest factor of a density.
 const MOST: f32 = 1e6;

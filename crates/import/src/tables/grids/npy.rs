@@ -90,7 +90,7 @@ pub(super) fn write(grid: &Grid) -> Vec<u8> {
     bytes
 }
 
-/// What follows a key of the header, which is a dictionary as Python writes it.
+/// Text after a key of the header, which is a dictionary as Python writes it.
 fn entry<'h>(header: &'h str, key: &str) -> Option<&'h str> {
     let (_, rest) = header.split_once(&format!("'{key}'"))?;
     Some(rest.trim_start().strip_prefix(':')?.trim_start())

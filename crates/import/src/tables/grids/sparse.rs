@@ -21,7 +21,7 @@ pub type LeafMask = [u8; BLOCK_VOXELS / 8];
 /// Reads the values of a leaf that is at some byte of the file.
 pub type ReadLeaf<'a> = dyn FnMut(usize, &mut LeafValues) -> Result<(), FormatError> + 'a;
 
-/// What has been found in a tree.
+/// Parts of a tree that have been found.
 #[derive(Debug)]
 pub struct Sparse {
     parts: Vec<Part>,
@@ -40,13 +40,13 @@ struct Part {
 
 #[derive(Clone, Copy, Debug)]
 enum Content {
-    /// Where in the file it is.
+    /// Place of the leaf in the file.
     Leaf(usize),
     /// As many voxels along each side as the first number, and their value.
     Tile(i64, f32),
 }
 
-/// What a whole grid needs beside its tree.
+/// Name and map of a grid, which a whole grid needs beside its tree.
 #[derive(Debug)]
 pub struct Placed<'a> {
     pub name: &'a str,
@@ -54,7 +54,7 @@ pub struct Placed<'a> {
     pub map: DMat4,
 }
 
-/// What a vertex of a surface takes while it is made, with the table in which its neighbours find it.
+/// Bytes of a vertex of a surface while it is made, with the table in which its neighbours find it.
 const SURFACE_BYTES: usize = 128;
 
 /// A tree with fewer blocks in all is not refused for its extent: 1290 voxels along each side.
@@ -240,7 +240,7 @@ impl Sparse {
         Ok((first, size.map(|side| side as usize)))
     }
 
-    /// What is in the blocks, in the order of grids.
+    /// Contents of the blocks, in the order of grids.
     fn contents(&self, first: [i64; 3], size: [usize; 3]) -> Vec<(u64, Content)> {
         let mut contents = Vec::with_capacity(self.blocks as usize);
         for part in &self.parts {

@@ -124,7 +124,8 @@ fn moved(voxel: [i64; 3], by: [i64; 3]) -> [i64; 3] {
     [0, 1, 2].map(|axis: usize| voxel[axis] + by[axis])
 }
 
-/// Where a surface passes through a cube, from 0 to 1 along each axis, and the slope of the distance there; `None` if it does not.
+/// Point where a surface passes through a cube, from 0 to 1 along each axis, and the slope of the distance there; `None` if
+/// it does not.
 fn vertex(corners: &[f64; 8]) -> Option<(DVec3, DVec3)> {
     let is_inside = corners.map(|distance| distance < 0.0);
     if corners.iter().any(|distance| distance.is_nan())

@@ -18,7 +18,7 @@ fn sniff(bytes: &[u8]) -> bool {
         || bytes.split(|byte| matches!(byte, b'\n' | b'\r')).any(|line| tilt(line).is_some())
 }
 
-/// What follows `TILT=`.
+/// Value that follows `TILT=`.
 fn tilt(line: &[u8]) -> Option<&[u8]> {
     let (word, rest) = line.trim_ascii().split_at_checked(TILT.len())?;
     let value = rest.trim_ascii_start().strip_prefix(b"=")?;
@@ -51,7 +51,7 @@ fn read(source: &Source) -> Result<Measured, FormatError> {
     Ok(Measured { distribution, warnings })
 }
 
-/// What comes before the numbers.
+/// Labels that come before the numbers.
 struct Labels {
     name: String,
     is_of_2019: bool,
@@ -86,10 +86,11 @@ fn skip_tilt(words: &mut Words) -> Result<bool, FormatError> {
     Ok(words.numbers(count, "tilt factors")?.iter().any(|factor| *factor != 1.0))
 }
 
-/// What a luminaire lets out of the light of its lamps, as a fraction: most of it, and no more than there is, but for rounding.
+/// Least and greatest fraction of the light of its lamps that a luminaire lets out: most of it, and no more than there is, but for
+/// rounding.
 const LET_OUT: [f64; 2] = [0.55, 1.05];
 
-/// What to say where the light of the lamps, in lumens, cannot be that of the intensities; nothing where it is not stated.
+/// Message where the light of the lamps, in lumens, cannot be that of the intensities; nothing where it is not stated.
 fn disagreement(stated: f64, found: f64) -> Option<String> {
     let [least, most] = LET_OUT;
     let share = found / stated;

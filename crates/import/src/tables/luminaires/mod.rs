@@ -27,11 +27,11 @@ pub struct LuminaireFormatEntry {
     pub read: fn(&Source) -> Result<Measured, FormatError>,
 }
 
-/// What a file of a luminaire has.
+/// Contents of a file of a luminaire.
 #[derive(Debug)]
 pub struct Measured {
     pub distribution: IntensityDistribution,
-    /// What it says and is not used.
+    /// Sentences on what the file says and is not used.
     pub warnings: Vec<String>,
 }
 

@@ -8,7 +8,7 @@ use crate::input::reading::Source;
 pub(super) struct Words<'a> {
     bytes: &'a [u8],
     at: usize,
-    /// Where the last line or word began.
+    /// Place where the last line or word began.
     began: usize,
     source: Source<'a>,
 }

@@ -1,4 +1,4 @@
-//! What comes before the trees of an OpenVDB file: its header, the list of its grids, and their metadata.
+//! Parts of an OpenVDB file that come before its trees: its header, the list of its grids, and their metadata.
 
 use super::level_sets::LEVEL_SET;
 use crate::FormatError;
@@ -30,18 +30,18 @@ pub(super) struct Descriptor {
     kind: String,
     /// The grid whose tree it shares, or nothing.
     parent: String,
-    /// Where it begins.
+    /// Place where the grid begins.
     begin: u64,
     end: u64,
 }
 
-/// What is known of a grid before its tree.
+/// Facts about a grid that are known before its tree is read.
 #[derive(Debug)]
 pub(super) struct Grid {
     /// Bytes of a value where it is not compressed.
     pub(super) width: usize,
     pub(super) halves: bool,
-    /// Where its own part begins, with metadata and its map, and where that of its tree does.
+    /// Places where its own part begins, with metadata and its map, and where that of its tree does.
     pub(super) own: u64,
     pub(super) tree: u64,
 }

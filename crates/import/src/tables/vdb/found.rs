@@ -1,4 +1,4 @@
-//! What the tree of a grid holds, as smoke or as a surface.
+//! Contents of the tree of a grid, as smoke or as a surface.
 
 use crate::FormatError;
 use crate::bytes::budget::Budget;

@@ -1,4 +1,4 @@
-//! Where an OpenVDB grid is: from indices to the space of the file.
+//! Maps of OpenVDB grids: from indices to the space of the file.
 
 use crate::FormatError;
 use crate::tables::grids::Bytes;

@@ -18,7 +18,7 @@ const SIGNATURE: &[u8] = b"NanoVDB";
 /// The only version of the layout that can be read.
 const MAJOR: u32 = 32;
 
-/// How a grid is compressed.
+/// Compressions of a grid, by their numbers.
 const PLAIN: u16 = 0;
 const ZIP: u16 = 1;
 const BLOSC: u16 = 2;
@@ -46,7 +46,7 @@ struct Entry {
     class: u32,
     kind: u32,
     codec: u16,
-    /// Where it is.
+    /// Place of the grid in the file.
     begin: usize,
     packed: usize,
     size: u64,

@@ -8,7 +8,7 @@ use bilux_scene::media::BLOCK_VOXELS;
 
 /// The bytes of a grid before its tree.
 pub(super) const GRID: usize = 672;
-/// Where the children of an inner node begin.
+/// Levels of inner nodes: below the root, and above the leaves.
 const UPPER: Level = Level { bits: 5, side: 128 };
 const LOWER: Level = Level { bits: 4, side: 8 };
 /// The voxels along a side of a child of the root.
@@ -24,14 +24,14 @@ struct Level {
     side: i32,
 }
 
-/// How values are stored.
+/// Form in which values are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Numbers {
     Floats,
     Doubles,
     /// As whole numbers of so many bits, between the least and the greatest value of each leaf.
     Bits(usize),
-    /// The same, with bits that differ from leaf to leaf.
+    /// As whole numbers too, whose number of bits differs from leaf to leaf.
     AnyBits,
 }
 

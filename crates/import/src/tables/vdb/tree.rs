@@ -22,7 +22,7 @@ const LEVELS: [(usize, i32); 2] = [(5, 128), (4, 8)];
 /// The voxels along a side of a child of the root.
 const TOP: i32 = 4096;
 
-/// How the values of a grid are stored.
+/// Encoding of the values of a grid.
 #[derive(Clone, Copy, Debug)]
 struct Encoding {
     /// Bytes of a value, and those of one among others, which may be a half.
@@ -164,10 +164,10 @@ fn leaf(
 /// The values of a node as the file has them.
 #[derive(Debug)]
 struct Run<'a> {
-    /// What inactive values are: those whose bit is off, and those whose bit is on.
+    /// Values of inactive voxels: of those whose bit in `selection` is off, and of those whose bit is on.
     inactive: [f32; 2],
     selection: &'a [u8],
-    /// How many values are stored: all, or the active ones.
+    /// Number of stored values: all, or the active ones.
     count: usize,
     data: &'a [u8],
     is_packed: bool,

@@ -31,7 +31,7 @@ pub fn metres(scene: &SceneBuilder) -> f64 {
     if scene.unit > 0.0 && scene.unit.is_finite() { scene.unit } else { 1.0 }
 }
 
-/// The same scene, scaled and turned as files of a format have it.
+/// Scene scaled and turned as files of a format have it.
 ///
 /// What states neither axis nor unit is taken as slicers take it where it is to be printed: as it is.
 pub fn in_frame(scene: &SceneBuilder, frame: Frame) -> Cow<'_, SceneBuilder> {

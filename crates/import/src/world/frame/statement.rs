@@ -1,9 +1,9 @@
-//! What files that have no words for unit and axis say of them in a comment, so that they are read as they were written.
+//! Comments on unit and axis in files that have no words for them, so that they are read as they were written.
 
 use super::metres;
 use bilux_scene::{Axis, SceneBuilder, UpHint};
 
-/// How far into a file the comment is looked for.
+/// Number of bytes at the beginning of a file in which the comment is looked for.
 const HEAD: usize = 2048;
 
 const BEFORE: &str = "Bilux: lengths are in units of ";

@@ -43,7 +43,7 @@ pub(super) fn filter(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>,
     Ok(Some(spec))
 }
 
-/// What cannot be described here: grey.
+/// Grey, for what cannot be described here.
 pub(super) fn not_shown(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, FormatError> {
     maker.not_shown(plugin);
     grey(maker, plugin)

@@ -18,7 +18,7 @@ const SAME: [(&str, &str, f32); 3] = [
 /// which is proportional to the roughness, and with the two terms of that. Its sheen likewise.
 const DIFFUSE: [f32; 3] = [0.9529, 0.1087, 0.0035];
 const SHEEN: f32 = 0.01158;
-/// The same of a coat, for a gloss of 0 and of 1.
+/// Mean reflectance of a coat, weighted likewise, for a gloss of 0 and of 1.
 const COAT: [f32; 2] = [0.0168, 0.0205];
 
 /// The roughness of our fuzz that stands for sheen.
@@ -83,7 +83,7 @@ fn diffuse(roughness: f32) -> f32 {
     DIFFUSE[0] + roughness * (DIFFUSE[1] + roughness * DIFFUSE[2])
 }
 
-/// The same for walls without thickness, of which only the clear part has a boundary. [Burley 2012]
+/// Material of walls without thickness, of which only the clear part has a boundary. [Burley 2012]
 pub(super) fn thin(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, FormatError> {
     // Only what is reflected diffusely has sheen.
     let mut less = |name, share: f32| {
@@ -120,7 +120,7 @@ pub(super) fn thin(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, F
     Ok(Some(spec))
 }
 
-/// What both have; `with_sheen` is the fraction of the surface that has sheen.
+/// Parameters that both materials have; `with_sheen` is the fraction of the surface that has sheen.
 fn common(
     maker: &mut Maker,
     plugin: &Plugin,

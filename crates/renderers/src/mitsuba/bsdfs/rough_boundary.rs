@@ -1,4 +1,4 @@
-//! How much diffuse light a rough boundary lets through, and reflects back inside. [Walter 2007]
+//! Fractions of diffuse light that a rough boundary lets through, and reflects back inside. [Walter 2007]
 //!
 //! Mitsuba counts facets that light meets once, and takes what meets several as lost; so the base below is darker than one that
 //! loses nothing, by a third at an alpha of 0.3. Ours loses nothing: its colour makes up for that. [Jakob 2022]
@@ -20,7 +20,7 @@ pub(super) enum Facets {
     Ggx,
 }
 
-/// What happens to diffuse light at a boundary; both are means over the hemisphere, weighted by the cosine.
+/// Fractions of diffuse light at a boundary; both are means over the hemisphere, weighted by the cosine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct RoughBoundary {
     /// The fraction of light from outside that passes.

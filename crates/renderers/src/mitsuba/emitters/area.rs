@@ -9,7 +9,7 @@ use bilux_scene::{MATERIALS, Spec, Texture};
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// What a shape emits to its front.
+/// Emission of a shape to its front.
 #[derive(Clone, Debug)]
 pub(in crate::mitsuba) struct Emission(pub(in crate::mitsuba) TextureOrValue);
 

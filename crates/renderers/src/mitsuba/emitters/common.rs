@@ -1,11 +1,11 @@
-//! What lights share.
+//! Properties that lights share.
 
 use crate::mitsuba::maker::{Maker, Meaning};
 use crate::mitsuba::plugin::Plugin;
 use bilux_import::FormatError;
 use bilux_math::{DMat4, Rgb};
 
-/// Where a light is.
+/// Placement of a light.
 pub(super) fn to_world(plugin: &Plugin) -> Result<DMat4, FormatError> {
     Ok(plugin.placement("to_world")?.map_or(DMat4::IDENTITY, |placement| placement.start()))
 }

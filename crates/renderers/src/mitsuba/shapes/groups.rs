@@ -68,8 +68,8 @@ pub(super) fn instance(maker: &mut ShapeMaker, plugin: &Rc<Plugin>) -> Result<Ve
     Ok(parts.iter().map(placed).collect())
 }
 
-/// What is said of a motion that cannot be kept.
+/// Message about a motion that cannot be kept.
 pub(in crate::mitsuba) const LOST_MOTION: &str =
     "a motion that is not made of translations, rotations and scales is not supported: the start is shown";
-/// What is said of a shape without extent.
+/// Message about a shape without extent.
 pub(in crate::mitsuba) const FLAT: &str = "objects with a scale of zero are not rendered";

@@ -1,4 +1,4 @@
-//! What the makers of shapes share.
+//! Cache and functions that the makers of shapes share.
 
 use crate::mitsuba::maker::Maker;
 use crate::mitsuba::plugin::Plugin;
@@ -17,7 +17,7 @@ pub(in crate::mitsuba) struct Piece {
     pub(in crate::mitsuba) mesh: Arc<Mesh>,
     /// From the space of the mesh to the world, or to that of its group.
     pub(in crate::mitsuba) to_world: Placement,
-    /// Those of the instances around it, the innermost first.
+    /// Motions of the instances around it, the innermost first.
     pub(in crate::mitsuba) instances: Vec<Motion>,
     /// True for a whole sphere of radius 1 that faces outwards.
     pub(in crate::mitsuba) is_sphere: bool,
@@ -32,11 +32,11 @@ pub(super) type FileKey = (PathBuf, usize, [bool; 3], Option<String>);
 #[derive(Default)]
 pub(in crate::mitsuba) struct ShapeCache {
     pub(super) files: HashMap<FileKey, Vec<Arc<Mesh>>>,
-    /// Those of a size of their own: spheres, cubes and so on, and whether they are turned inside out.
+    /// Meshes of a size of their own: spheres, cubes and so on, and whether they are turned inside out.
     pub(super) solids: HashMap<(&'static str, bool), Arc<Mesh>>,
     /// The pieces of groups.
     pub(super) groups: HashMap<*const Plugin, Rc<Vec<Piece>>>,
-    /// What is wrong in the files of meshes, and what is odd.
+    /// Faults in the files of meshes, and what is odd.
     pub(in crate::mitsuba) warnings: Vec<Warning>,
     pub(in crate::mitsuba) notes: Vec<Warning>,
 }
@@ -64,7 +64,7 @@ impl ShapeMaker<'_, '_, '_> {
         Ok(self.placed_by(plugin, meshes, first, placement))
     }
 
-    /// The same by another placement than that of the shape.
+    /// Pieces of a shape as in `placed`, by another placement than that of the shape.
     pub(super) fn placed_by(
         &mut self,
         plugin: &Rc<Plugin>,

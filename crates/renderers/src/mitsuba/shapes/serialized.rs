@@ -14,7 +14,7 @@ use std::rc::Rc;
 const SIGNATURE: u16 = 0x041c;
 const VERSIONS: std::ops::RangeInclusive<u16> = 3..=4;
 
-/// What a mesh has.
+/// Flags of a mesh, for what it has.
 const NORMALS: u32 = 0x1;
 const UVS: u32 = 0x2;
 const COLOURS: u32 = 0x8;

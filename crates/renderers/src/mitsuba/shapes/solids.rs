@@ -31,7 +31,7 @@ pub(super) fn rectangle(maker: &mut ShapeMaker, plugin: &Rc<Plugin>) -> Result<V
     maker.placed(plugin, vec![mesh], &DMat4::IDENTITY)
 }
 
-/// The same mesh where v has pointed downwards.
+/// Mesh with v upwards, from one where v has pointed downwards.
 pub(super) fn upwards(mut mesh: Mesh) -> Mesh {
     mesh.uvs.iter_mut().for_each(|uv| uv.y = 1.0 - uv.y);
     mesh

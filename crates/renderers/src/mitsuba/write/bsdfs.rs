@@ -19,7 +19,7 @@ const PLAIN: Keys = (["roughness", "anisotropy", "rotation"], 90.0);
 const PRINCIPLED: Keys =
     (["specular_roughness", "specular_roughness_anisotropy", "anisotropy_rotation"], 0.25);
 
-/// What Mitsuba's principled material does not have, or not as we do.
+/// Parameters that Mitsuba's principled material does not have, or not as we do.
 const OTHERS: [&str; 6] = [
     "specular_color",
     "specular_roughness_anisotropy",

@@ -20,7 +20,7 @@ pub(super) struct Document<'s> {
     pub(super) groups: HashMap<(*const Mesh, usize), String>,
 }
 
-/// What a surface has from its material.
+/// Properties that a surface has from its material.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Look {
     /// The identifier of its bsdf.
@@ -36,11 +36,11 @@ pub(super) struct Inside {
     pub(super) absorption: Rgb,
     pub(super) scattering: Rgb,
     pub(super) anisotropy: f32,
-    /// Its density, where it varies.
+    /// Density of the medium, where it varies.
     pub(super) density: Option<std::sync::Arc<bilux_scene::media::Grid>>,
 }
 
-/// What a surface emits.
+/// Emission of a surface.
 #[derive(Clone, Debug)]
 pub(super) enum Emission {
     Even(Rgb, bool),

@@ -9,7 +9,7 @@ use bilux_math::{Mat4, Rgb, Vec3};
 use bilux_scene::{Spec, Value};
 use std::f32::consts::PI;
 
-/// How far the back of what emits on both sides is behind its front, over its size: they must not coincide.
+/// Distance between front and back of what emits on both sides, over its size: they must not coincide.
 pub(super) const APART: f32 = 1e-4;
 
 impl Document<'_> {

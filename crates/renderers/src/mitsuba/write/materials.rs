@@ -76,7 +76,7 @@ const HOLDS: MaterialSupport = MaterialSupport {
 };
 
 impl Document<'_> {
-    /// What a surface of a material has, whose bsdf is written on first use.
+    /// Look of a surface of a material, whose bsdf is written on first use.
     pub(super) fn look(&mut self, material: usize, writing: &mut Writing) -> Result<Look, FormatError> {
         if let Some(known) = self.looks.get(&material) {
             return Ok(known.clone());

@@ -27,7 +27,7 @@ impl Document<'_> {
         }
     }
 
-    /// The same for a number.
+    /// Writes a number, or a texture of numbers, under a key, as the property of this name.
     pub(super) fn numbers_of(
         &mut self,
         spec: &Spec,

@@ -1,4 +1,4 @@
-//! What the makers of materials share.
+//! Parts and functions that the makers of materials share.
 
 use crate::pbrt::document::Document;
 use crate::pbrt::loader::{Loader, SpectrumType};
@@ -13,7 +13,7 @@ use bilux_scene::{Span, Spec, Value};
 
 /// Makes materials.
 pub(in crate::pbrt) struct MaterialMaker<'d, 'o, 'r> {
-    /// Where materials have their names.
+    /// Document in which materials have their names.
     pub(super) document: &'d Document,
     pub(in crate::pbrt) textures: Textures<'d, 'o, 'r>,
     /// The materials of the scene.

@@ -119,7 +119,7 @@ pub(super) fn conductor(
     Ok(Some(spec))
 }
 
-/// How a metal is described.
+/// Metal, by what describes it.
 pub(super) enum Metal {
     /// By its reflectance at normal incidence.
     Reflectance(TextureOrValue),

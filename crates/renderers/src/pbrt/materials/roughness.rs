@@ -15,7 +15,7 @@ use bilux_scene::Spec;
 pub(super) type Names = [&'static str; 3];
 pub(super) const OWN: Names = ["roughness", "uroughness", "vroughness"];
 
-/// How numbers are converted to alphas.
+/// Conversion of numbers to alphas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Remap {
     /// They are alphas already.

@@ -10,7 +10,7 @@ use bilux_math::glam::DVec3;
 
 /// Subdivisions along and around a segment if there are few curves.
 const FINE: (u32, u32) = (16, 8);
-/// The same if there are many curves.
+/// Subdivisions along and around a segment if there are many curves.
 const COARSE: (u32, u32) = (4, 3);
 /// The number of curves from which on `COARSE` applies.
 const MANY: usize = 2000;

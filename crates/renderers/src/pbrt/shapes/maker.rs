@@ -1,4 +1,4 @@
-//! What the makers of shapes share.
+//! Cache and functions that the makers of shapes share.
 
 use crate::pbrt::document::ShapeGeometry;
 use crate::pbrt::loader::Loader;
@@ -21,7 +21,7 @@ pub(in super::super) struct ShapeCache {
     pub(super) files: HashMap<(PathBuf, bool), Arc<Mesh>>,
     /// The number of curves so far.
     pub(super) curves: usize,
-    /// What is wrong in the files of meshes, and what is odd.
+    /// Faults in the files of meshes, and what is odd.
     pub(in super::super) warnings: Vec<Warning>,
     pub(in super::super) notes: Vec<Warning>,
 }

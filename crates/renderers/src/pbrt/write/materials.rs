@@ -17,7 +17,7 @@ use bilux_scene::{Spec, Value};
 /// Roughness is written as alpha, so pbrt must not take its root.
 const AS_ALPHA: &str = " \"bool remaproughness\" false";
 
-/// What fills a material.
+/// Medium that fills a material.
 fn inside(spec: &Spec) -> Medium {
     Medium {
         absorption: colour(spec, "absorption").unwrap_or(Rgb::BLACK),

@@ -12,7 +12,7 @@ use std::collections::HashMap;
 use std::fmt::Write;
 use std::sync::Arc;
 
-/// What has been written of objects.
+/// Objects, as far as they have been written.
 pub(super) struct Objects {
     /// For each material of the scene, its name here and the attributes of its shapes.
     shape_attributes: Vec<ShapeAttributes>,

@@ -1,4 +1,4 @@
-//! What a material adds to its shapes: its name, interior medium, emission and opacity mask.
+//! Attributes that a material adds to its shapes: its name, interior medium, emission and opacity mask.
 
 use super::document::{Document, float, rgb};
 use super::lights::area_light;

@@ -20,7 +20,7 @@ pub(super) struct Change<'c> {
 /// No change.
 pub(super) const AS_IT_IS: Change = Change { name: "", of: &|texel| texel };
 
-/// How the texels of a texture are interpreted.
+/// Interpretation of the texels of a texture.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum TexelMeaning {
     Colours,

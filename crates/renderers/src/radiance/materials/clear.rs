@@ -10,7 +10,7 @@ use bilux_scene::Spec;
 /// The index of a pane that does not state one.
 const OF_PANES: f64 = 1.52;
 
-/// What is taken for a transmission of nothing.
+/// Transmission that is taken in place of 0.
 const OPAQUE: f64 = 1e-40;
 
 /// A pane: its numbers are what is left of light that crosses it once, between its faces.

@@ -26,7 +26,7 @@ enum Measured {
     Parameters(f64, f64),
     /// Irradiances by the sun, of a surface that faces it, and by the sky.
     Irradiances(f64, f64),
-    /// The same in lux.
+    /// Illuminances by the sun, of a surface that faces it, and by the sky, in lux.
     Illuminances(f64, f64),
     /// Irradiances of level ground.
     Level(f64, f64),
@@ -40,7 +40,7 @@ enum Unit {
     Lumens,
 }
 
-/// What it writes; nothing for a sky that its formulas do not describe.
+/// Statements that `gendaylit` writes; none for a sky that its formulas do not describe.
 pub(in super::super) fn generate(
     words: &[Rc<str>],
     at: &Span,

@@ -25,7 +25,7 @@ enum Amount {
     Irradiance(f64),
 }
 
-/// What it writes.
+/// Statements that `gensky` writes.
 pub(in super::super) fn generate(words: &[Rc<str>], at: &Span) -> Result<Vec<Statement>, FormatError> {
     let mut options = Options::new(words, "gensky", at);
     let moment = Moment::read(&mut options)?;

@@ -1,4 +1,4 @@
-//! Where the sun stands: by a date and an hour at a place, or by its angles.
+//! Direction of the sun: by a date and an hour at a place, or by its angles.
 
 use super::Options;
 use bilux_import::FormatError;
@@ -11,12 +11,12 @@ use std::f64::consts::{PI, TAU};
 pub(super) struct Site {
     pub(super) latitude: f64,
     pub(super) longitude: f64,
-    /// That of its standard time.
+    /// Meridian of its standard time.
     pub(super) meridian: f64,
 }
 
 impl Default for Site {
-    /// Where the generators are unless told otherwise: in Berkeley.
+    /// Site of the generators unless they are told otherwise: Berkeley.
     fn default() -> Site {
         Site { latitude: 0.66, longitude: 2.13, meridian: 120f64.to_radians() }
     }
@@ -38,7 +38,7 @@ pub(super) enum Moment {
     Angles { altitude: f64, azimuth: f64 },
 }
 
-/// Where the sun stands, in radians; the azimuth from the south to the west.
+/// Angles of the sun, in radians; the azimuth from the south to the west.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Angles {
     pub(super) altitude: f64,
@@ -107,7 +107,7 @@ impl Moment {
         }
     }
 
-    /// Where the sun stands. The year counts where it is given. [IES 1984; Michalsky 1988]
+    /// Angles of the sun. The year counts where it is given. [IES 1984; Michalsky 1988]
     pub(super) fn sun(&self, site: &Site, year: Option<i32>) -> Angles {
         match *self {
             Moment::Angles { altitude, azimuth } => Angles { altitude, azimuth },
@@ -147,7 +147,7 @@ fn seen_from(latitude: f64, declination: f64, hour: f64) -> Angles {
 }
 
 impl Angles {
-    /// The same not higher than 87 degrees, which the formulas of clear skies do not bear.
+    /// Angles of a sun that is not higher than 87 degrees: the formulas of clear skies do not bear more.
     pub(super) fn below_zenith(self) -> Angles {
         Angles { altitude: self.altitude.min(87f64.to_radians()), ..self }
     }

@@ -1,4 +1,4 @@
-//! How light of the sun and of the sky follows from irradiances that were measured. [Perez 1990]
+//! Light of the sun and of the sky, from irradiances that were measured. [Perez 1990]
 
 use bilux_math::transcendental::{cos_f64, exp_f64, ln_f64, powf_f64, sin_cos_f64};
 use std::f64::consts::TAU;
@@ -37,7 +37,7 @@ const OF_SKY: [[f64; 4]; 8] = [
     [152.23, 0.35, -45.27, -7.98],
 ];
 
-/// The same of the sun.
+/// Of each range of clearness: lm/W of the sun. \[Perez 1990, table 4]
 const OF_SUN: [[f64; 4]; 8] = [
     [57.20, -4.55, -2.98, 117.12],
     [98.99, -3.46, -1.21, 12.38],
@@ -82,7 +82,7 @@ impl Air {
         [sun.max(0.0), sky.max(0.0)]
     }
 
-    /// How many times the vertical depth of the atmosphere the light of the sun passes. [Kasten 1966]
+    /// Air mass: how many times the vertical depth of the atmosphere the light of the sun passes. [Kasten 1966]
     fn mass(self) -> f64 {
         let degrees = self.zenith.to_degrees().min(90.0);
         1.0 / (cos_f64(degrees.to_radians()).max(0.0) + 0.15 * powf_f64(93.885 - degrees, -1.253))

@@ -9,18 +9,18 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 pub(in super::super) enum Formula {
     /// The intermediate sky, by the radiance of its zenith.
     Intermediate { zenith: f64 },
-    /// That of Perez by its five coefficients, and a factor.
+    /// Sky of Perez by its five coefficients, and a factor.
     Perez { factor: f64, coefficients: [f64; 5] },
 }
 
 impl Formula {
-    /// Its radiance in a direction, with y up as in the scene.
+    /// Radiance in a direction, with y up as in the scene.
     pub(in super::super) fn at(self, direction: DVec3, sun: DVec3) -> f64 {
         let file = |v: DVec3| DVec3::new(v.x, -v.z, v.y);
         self.in_file(file(direction), file(sun))
     }
 
-    /// The same with z up.
+    /// Radiance in a direction, with z up.
     pub(super) fn in_file(self, direction: DVec3, sun: DVec3) -> f64 {
         match self {
             Formula::Intermediate { zenith } => {
@@ -34,7 +34,7 @@ impl Formula {
 /// Formulas that divide by the height of a direction keep to this near the horizon.
 const LOWEST: f64 = 0.01;
 
-/// What level ground receives of a sky.
+/// Irradiance of level ground by a sky.
 pub(super) fn level(sky: impl Fn(DVec3) -> f64) -> f64 {
     const FINE: u32 = 64;
     // Rings that level ground receives alike from an even sky.
@@ -78,7 +78,7 @@ fn perez(direction: DVec3, sun: DVec3, [a, b, c, d, e]: [f64; 5]) -> f64 {
     (gradation * (1.0 + c * exp_f64(d * angle) + e * cos * cos)).max(0.0)
 }
 
-/// What kind of sky.
+/// Kind of sky.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in super::super) enum Weather {
     Clear,
@@ -87,7 +87,7 @@ pub(in super::super) enum Weather {
     Intermediate,
 }
 
-/// What level ground receives of a sky whose zenith has a radiance of 1.
+/// Irradiance of level ground by a sky whose zenith has a radiance of 1.
 pub(in super::super) fn level_irradiance(weather: Weather, sun: DVec3) -> f64 {
     match weather {
         Weather::Uniform => PI,

@@ -1,4 +1,4 @@
-//! How bright skies are, whoever made them.
+//! Brightness of skies, whoever made them.
 
 mod formula;
 mod given;

@@ -1,9 +1,9 @@
-//! How bright a sky is.
+//! Brightness of a sky.
 
 use super::formula::{Formula, Weather};
 use bilux_math::DVec3;
 
-/// How bright a sky is, in Radiance's units.
+/// Brightness of a sky, in Radiance's units.
 #[derive(Clone, Debug, PartialEq)]
 pub(in super::super) struct Sky {
     pub(in super::super) form: Form,
@@ -15,18 +15,18 @@ pub(in super::super) struct Sky {
     pub(in super::super) ground: f64,
 }
 
-/// How the brightness is distributed.
+/// Distribution of the brightness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in super::super) enum Form {
     /// A standard sky of the CIE, by its number in Bilux and the radiance of its zenith.
     Cie { standard: i32, zenith: f64 },
-    /// That of Perez, by its clearness and brightness.
+    /// A sky of Perez, by its clearness and brightness.
     Perez { clearness: f64, brightness: f64 },
     /// One that Bilux has no light for.
     Formula(Formula),
 }
 
-/// How the brightness is distributed, with this radiance of the zenith.
+/// Distribution of the brightness, with this radiance of the zenith.
 pub(in super::super) fn form(weather: Weather, zenith: f64) -> Form {
     match weather {
         Weather::Clear => Form::Cie { standard: 12, zenith },

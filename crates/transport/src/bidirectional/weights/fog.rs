@@ -7,12 +7,12 @@ use bilux_math::{Aabb, Vec3};
 pub(super) struct Fog {
     /// The extinction coefficient, in the sample's channel.
     pub(super) extinction: f32,
-    /// Where it is; none if it fills the scene.
+    /// Regions of the fog; none if it fills the scene.
     pub(super) parts: &'static [Aabb],
 }
 
 impl Fog {
-    /// How much of the line between two points is in it, in metres.
+    /// Length of the line between two points that is in the fog, in metres.
     pub(super) fn between(&self, a: Vec3, b: Vec3) -> f64 {
         let [a, b] = [a, b].map(Vec3::as_dvec3);
         let length = a.distance(b);

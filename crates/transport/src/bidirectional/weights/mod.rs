@@ -38,12 +38,12 @@ struct Verdict {
     techniques: TechniqueCounts,
     flaw: Flaw,
     fog: Option<Rgb>,
-    /// Where it is; none if it fills the scene.
+    /// Regions of the fog; none if it fills the scene.
     parts: &'static [Aabb],
     compared: usize,
     wrong: usize,
     worst: f64,
-    /// How many weights were neither almost 0 nor almost 1, by kind: emitter hit, light sample, splat, connection,
+    /// Number of weights that were neither almost 0 nor almost 1, by kind: emitter hit, light sample, splat, connection,
     /// merge, crossed beams, equiangular point, light sample through panes.
     telling: [usize; 8],
 }
@@ -89,7 +89,7 @@ fn verdict(scene: &Scene, techniques: &TechniqueCounts, flaw: Flaw, fog: Option<
     verdict_in(scene, techniques, flaw, fog, &[])
 }
 
-/// The same where fog is in these parts of the scene alone.
+/// Checks every path of some samples where fog is in these parts of the scene alone.
 fn verdict_in(
     scene: &Scene,
     techniques: &TechniqueCounts,
@@ -126,18 +126,18 @@ fn scene(lights: &[&str], camera: Spec) -> Scene {
     shapes::built(&filled(lights, camera, &glass))
 }
 
-/// How much of each channel the fog absorbs and scatters, per metre.
+/// Absorption and scattering of the fog in each channel, per metre.
 const FOG: [Rgb; 2] = [Rgb::new(0.02, 0.05, 0.01), Rgb::new(0.25, 0.15, 0.1)];
 
-/// The same without colour.
+/// Absorption and scattering of fog without colour, per metre.
 const GREY_FOG: [Rgb; 2] = [Rgb::grey(0.02), Rgb::grey(0.2)];
 
-/// The same bodies inside a ball of what scatters, with mirrors in place of glass, so that fog fills every edge.
+/// The bodies of [`scene`] inside a ball of what scatters, with mirrors in place of glass, so that fog fills every edge.
 fn foggy(lights: &[&str], camera: &Spec, fog: Spec, coefficients: [Rgb; 2]) -> Scene {
     shapes::built(&foggy_of(filled(lights, camera.clone(), &Spec::new("", "mirror")), fog, coefficients))
 }
 
-/// The same of any bodies.
+/// Any bodies inside such a ball.
 fn foggy_of(mut builder: SceneBuilder, fog: Spec, [absorption, scattering]: [Rgb; 2]) -> SceneBuilder {
     let fog = fog.with("absorption", absorption).with("scattering", scattering);
     let fog = fog.with("scattering_anisotropy", 0.4f32);
@@ -318,7 +318,7 @@ fn every_mis_weight_matches_its_definition_in_fog_among_many_lights() {
     assert!(telling[..2].iter().all(|&n| n > 500), "{telling:?}");
 }
 
-/// The same where fog is dense: its points are merged in balls.
+/// This set where fog is dense: its points are merged in balls.
 fn with_points(set: TechniqueCounts) -> TechniqueCounts {
     TechniqueCounts { densest: 0.1, points: PerSet([2000.0]), radius: 0.5, ..set }
 }

@@ -22,7 +22,7 @@ pub(super) struct PathVertex {
     pub(super) at: Interaction,
     pub(super) to_light: Vec3,
     pub(super) to_camera: Vec3,
-    /// Its event was a delta event.
+    /// Whether its event was a delta event.
     pub(super) is_delta: bool,
 }
 
@@ -78,7 +78,7 @@ pub(super) enum Flaw {
 }
 
 impl Path {
-    /// How often each technique finds this path, by (merges, s).
+    /// Frequency with which each technique finds this path, by (merges, s).
     pub(super) fn densities(
         &self,
         task: &Task,
@@ -180,7 +180,7 @@ impl Path {
         if rows.contains(&0) { 0 } else { rows.iter().sum::<usize>() as u32 }
     }
 
-    /// How many equiangular points are where the vertex next to the light is, for each event of a walk; `None` where there are none.
+    /// Number of equiangular points where the vertex next to the light is, for each event of a walk; `None` where there are none.
     fn equiangular(&self, task: &Task, flaw: Flaw) -> Option<f64> {
         let (scene, first) = (task.context.scene, &self.nodes[0]);
         let Interaction::Medium(MediumPoint { is_equiangular: true, .. }) = first.at else { return None };
@@ -331,7 +331,8 @@ impl Path {
         }
     }
 
-    /// How often two beams of one metre's width cross at a point of the fog, over the densities of both walks having events there.
+    /// Frequency with which two beams of one metre's width cross at a point of the fog, over the densities of both walks having
+    /// events there.
     fn crossing(&self, node: &PathVertex, flaw: Flaw) -> f64 {
         let sine = match flaw {
             Flaw::Sine => 1.0,

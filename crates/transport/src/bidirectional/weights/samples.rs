@@ -290,7 +290,7 @@ struct Traced<'w> {
     left: Option<Subpath<'w>>,
     camera_density: f32,
     points: Vec<EquiangularPoint>,
-    /// How often the emitter at each vertex is sampled through panes.
+    /// Frequency with which the emitter at each vertex is sampled through panes.
     through_panes: Vec<f32>,
 }
 
@@ -298,7 +298,7 @@ struct Traced<'w> {
 struct EquiangularPoint {
     before: usize,
     light: usize,
-    /// How many such points are there, for each event of a walk.
+    /// Number of such points there, for each event of a walk.
     ratio: f32,
     vertex: Vertex,
     /// The density of camera rays at the camera subpath's first vertex, which may be this one.

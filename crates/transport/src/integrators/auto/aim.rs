@@ -110,12 +110,12 @@ pub(super) fn learn(
     (untrained.trained(&worth(&starts, &all)), counters)
 }
 
-/// How often a subpath begins in each cell, times the root mean square of what it contributes.
+/// Frequency with which a subpath begins in each cell, times the root mean square of what it contributes.
 fn worth(starts: &[f64], squares: &[f64]) -> Vec<f64> {
     starts.iter().zip(squares).map(|(starts, sum)| (starts * sum).sqrt()).collect()
 }
 
-/// How often an unaimed light subpath begins in each cell.
+/// Frequency with which an unaimed light subpath begins in each cell.
 fn starts(round: &PilotRound, cells: usize) -> Vec<f64> {
     let (scene, seed) = (round.eye.context.scene, round.eye.settings.seed);
     let cell = |i| {
@@ -240,7 +240,7 @@ mod tests {
     use crate::shapes::built;
     use bilux_scene::Spec;
 
-    /// Where pixels are small, photons hardly ever fall within their footprints.
+    /// Photons hardly ever fall within the footprints of small pixels.
     #[test]
     fn light_under_water_is_aimed_at_in_films_of_any_size() {
         let scene = built(&bilux_scene::generators::generate(&Spec::new("", "pool")).unwrap());

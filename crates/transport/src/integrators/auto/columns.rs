@@ -1,4 +1,4 @@
-//! How much of a picture path tracing shades in columns, which costs less.
+//! Part of a picture that path tracing shades in columns, which costs less.
 
 use super::pilot::Grid;
 use crate::film::failures::SamplePlace;

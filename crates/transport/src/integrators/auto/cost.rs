@@ -30,7 +30,7 @@ const MERGED: f64 = 80.0;
 /// cell.
 const PHOTON: f64 = 450.0;
 
-/// The same for paths that are followed in a queue without techniques from the light: on surfaces of any kind, and on
+/// Nanoseconds of a step of paths that are followed in a queue without techniques from the light: on surfaces of any kind, and on
 /// those that are shaded in columns. See docs/adr/0013-auto.md.
 const CAMERA_IN_QUEUE: [f64; 2] = [500.0, 180.0];
 const PICKED_IN_QUEUE: [f64; 2] = [80.0, 35.0];

@@ -60,9 +60,9 @@ pub(super) struct Block {
     pub(super) mean: f64,
     /// Expected variance of a pixel, times its samples, for each set: without the second moment of `finds`.
     pub(super) variance: [f64; SET_COUNT],
-    /// What single techniques of each set are expected to find.
+    /// Expected contributions of the single techniques of each set.
     pub(super) finds: [Contributions; SET_COUNT],
-    /// What the techniques of a set cannot find at all.
+    /// Light that the techniques of a set cannot find at all.
     pub(super) lost: [f64; SET_COUNT],
 }
 
@@ -135,7 +135,7 @@ pub(super) fn photon_settings(round: &RenderSettings, light_paths: u64) -> Rende
     RenderSettings { width: light_paths as u32, height: 1, filter, pixel_anchor, ..round.clone() }
 }
 
-/// How the pilot merges where a film of so many pixels merges like this.
+/// Merging in the pilot, where a film of so many pixels merges like this.
 pub(super) fn merging(film: &Merging, pixels: f32) -> Merging {
     let wide = (film.radius * (pixels / MERGED_PIXELS).sqrt()).min(WIDEST);
     Merging { radius: film.radius.max(wide), ..*film }
@@ -169,7 +169,7 @@ pub(super) struct PilotRound<'a> {
 }
 
 impl PilotRound<'_> {
-    /// The same with light subpaths that are aimed by a guide.
+    /// This round with light subpaths that are aimed by a guide.
     pub(super) fn guided(self, guide: &Option<Arc<Guide>>) -> Self {
         PilotRound { eye: self.eye.guided(guide.clone()), light: self.light.guided(guide.clone()) }
     }
@@ -311,7 +311,7 @@ struct Sample {
     /// Sum of what the single techniques of each set find, and sum of its squares.
     sums: [f64; SET_COUNT],
     squares: [f64; SET_COUNT],
-    /// That sum of squares as predicted by all techniques.
+    /// Prediction of that sum of squares by all techniques.
     finds: [Contributions; SET_COUNT],
     lost: [f64; SET_COUNT],
 }

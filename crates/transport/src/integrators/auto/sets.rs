@@ -6,7 +6,7 @@ use crate::techniques::TechniqueCounts;
 /// A set of techniques, as well as those that a camera subpath has on its own.
 pub(super) struct Set {
     pub(super) name: &'static str,
-    /// Its name as a parameter value.
+    /// Name as a parameter value.
     pub(super) techniques: &'static str,
     pub(super) splats: bool,
     pub(super) connections: bool,

@@ -39,7 +39,7 @@ pub fn blocks<'a>(
     blocks_of_depth(scene, integrator, first_seed, 6)
 }
 
-/// Those of paths with at most this many events on surfaces.
+/// Block means of paths with at most this many events on surfaces.
 pub fn blocks_of_depth<'a>(
     scene: impl Borrow<Scene> + 'a,
     integrator: impl Borrow<Box<dyn PixelIntegrator>> + 'a,
@@ -124,7 +124,7 @@ fn means_over(pixels: &[Rgb]) -> [(f64, f64); 3] {
     [0, 1, 2].map(|of| estimate(&channel(pixels, of)))
 }
 
-/// What [`channel_means`] gives: by the record of this case, where the first of its samples are as they were.
+/// Means as [`channel_means`] gives them: by the record of this case, where the first of its samples are as they were.
 pub fn recorded_means(
     case: &str,
     scene: &Scene,

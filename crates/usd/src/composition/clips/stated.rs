@@ -1,4 +1,4 @@
-//! What layers say of clips, and the layers of the clips themselves.
+//! Statements of layers about clips, and the layers of the clips themselves.
 
 use super::turns::{Active, ClipSet, Clipped, MAX_REACH, ROUNDING};
 use crate::composition::layers::Layers;
@@ -36,7 +36,7 @@ pub(super) fn stronger(node: &Node, (stack, path): &(u32, String)) -> Option<usi
 /// The entries of a set, by the opinions that have them.
 pub(super) type Stated<'s> = Vec<(&'s Opinion, Vec<(Text, Value)>)>;
 
-/// What several layers say of one set.
+/// Reader of one set, from what several layers say of it.
 pub(super) struct Reader<'s, 'l, 'r, 'o, 'b> {
     pub(super) stated: &'s Stated<'s>,
     pub(super) layers: &'l mut Layers<'r, 'o, 'b>,

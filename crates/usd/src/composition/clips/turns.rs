@@ -4,7 +4,7 @@ use crate::value::{Text, TimeOffset};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// How many clips before and after one are opened in search of values that it has not.
+/// Number of clips before and after one that are opened in search of values that it has not.
 pub(super) const MAX_REACH: usize = 64;
 /// Of numbers of steps.
 pub(super) const ROUNDING: f64 = 1e-9;
@@ -14,14 +14,14 @@ pub(super) const ROUNDING: f64 = 1e-9;
 pub(crate) struct ClipSet {
     /// Of all sets of a read, which one it is.
     pub(crate) number: u32,
-    /// What the time codes of the layer that states it are on the stage.
+    /// Map of the time codes of the layer that states it to those of the stage.
     pub(super) offset: TimeOffset,
     pub(super) active: Active,
     /// Times of that layer, and what they are in the clips.
     pub(super) times: Vec<[f64; 2]>,
     /// Which attributes the clips have; without it, those that the clip of the time has.
     pub(crate) manifest: Option<u32>,
-    /// What a clip has no values of comes from those before and after it.
+    /// Whether values that a clip has not come from those before and after it.
     pub(crate) bridges: bool,
     /// The layers of those clips that are needed.
     pub(super) opened: BTreeMap<usize, u32>,
@@ -39,7 +39,7 @@ pub(super) enum Active {
 #[derive(Clone, Debug)]
 pub(crate) struct Clipped {
     pub(crate) set: Arc<ClipSet>,
-    /// How many opinions about the prim are stronger.
+    /// Number of opinions about the prim that are stronger.
     pub(crate) stronger: usize,
     /// The prim in the clips.
     pub(crate) path: Text,
@@ -62,7 +62,7 @@ pub(crate) struct Turn {
     since: f64,
     end: f64,
     until: f64,
-    /// How fast outer time goes when that of the clip does.
+    /// Speed of outer time over that of the clip.
     speed: f64,
     /// Other clips, which have no values, are in use.
     is_over: bool,
@@ -71,7 +71,7 @@ pub(crate) struct Turn {
 }
 
 impl Turn {
-    /// Where values go from this clip to the next: the time in this one that they go from, and how far they have come. `None`
+    /// Transition of values from this clip to the next: the time in this one that they go from, and how far they have come. `None`
     /// where samples of this clip are around its time, which is between `before` and `after`.
     pub(crate) fn across(&self, before: Option<f64>, after: Option<f64>) -> Option<(f64, f64)> {
         let outer = |time: f64| self.moment + (time - self.time) * self.speed;

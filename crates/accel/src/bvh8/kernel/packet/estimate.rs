@@ -14,7 +14,7 @@ pub(super) struct Estimate<W> {
 }
 
 /// The error of an estimated distance, relative to the largest distance of a corner and to the condition of the
-/// determinant: 32 units of rounding, where the proof in docs/adr/0032-incoherent-packets.md needs 20.
+/// determinant: 32 units of rounding, where the proof in docs/adr/0008-bvh8.md needs 20.
 const ESTIMATE: f32 = 32.0 / 16_777_216.0;
 
 /// Below this, products may have lost digits to underflow.
