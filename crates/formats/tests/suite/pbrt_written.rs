@@ -265,7 +265,7 @@ fn a_frame_wider_than_the_picture_stays_whole() {
     }
 }
 
-/// A picture that shines loses what pbrt cannot say of it, and a warning says so; of one that lies as pbrt puts it, nothing is said.
+/// A warning says what pbrt cannot hold of a picture that shines; there is none for a picture that lies as pbrt puts it.
 #[test]
 fn pictures_that_shine_say_what_is_lost_of_their_place() {
     use bilux_scene::Texture;
