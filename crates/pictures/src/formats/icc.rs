@@ -26,8 +26,8 @@ pub(super) fn meaning_or_srgb(profile: Option<&[u8]>) -> Meaning {
 /// of profiles of sRGB do not agree on their third digits.
 const SAME: f64 = 0.02;
 
-/// Colour space of a curve whose value for half is this: straight, that of sRGB and powers near it, or a power. No two curves in use
-/// meet there.
+/// Colour space of a curve whose value for half is this: straight, that of sRGB and powers near it, or a power. No two curves
+/// in use meet there.
 fn of_middle(light: f64) -> ColourSpace {
     // Half of the sRGB curve is .2140, and half to the power of 2.2 is .2176.
     match light {

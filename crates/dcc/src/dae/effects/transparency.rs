@@ -1,4 +1,4 @@
-//! Opacity, which files state in four modes, and exporters use these in ways that contradict each other. See
+//! Opacity, which files state in four modes; exporters use these in ways that contradict each other. See
 //! `docs/formats/collada.md`.
 
 use super::common::Filling;
