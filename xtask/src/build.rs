@@ -16,17 +16,17 @@ use std::sync::LazyLock;
 /// command builds, so another choice of packages would build nearly everything a second time.
 const ALL: &[&str] = &["build", "--locked", "--workspace", "--lib", "--tests"];
 
-/// What is linted besides.
+/// Targets that are linted besides.
 const REST: &[&str] = &["--bins", "--examples"];
 
-/// What cargo has built.
+/// Results of a build by cargo.
 #[derive(Default)]
 pub(crate) struct Built {
     /// Cargo's messages about each file.
     pub(crate) artifacts: Vec<Value>,
     /// The package of each build script, and the variables that it has set.
     variables: Vec<(String, Vec<(String, String)>)>,
-    /// How many warnings there are.
+    /// Number of warnings.
     warnings: usize,
 }
 
@@ -92,7 +92,7 @@ impl Built {
         }
     }
 
-    /// What the build script of a package has set for its compilation.
+    /// Variables that the build script of a package has set for its compilation.
     pub(crate) fn variables(&self, package: &str) -> impl Iterator<Item = (&str, &str)> {
         let of = self.variables.iter().filter(move |(id, _)| id == package);
         of.flat_map(|(_, list)| list.iter().map(|(name, value)| (name.as_str(), value.as_str())))

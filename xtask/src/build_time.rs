@@ -49,7 +49,7 @@ const EDITS: &[Edit] = &[
     },
 ];
 
-/// How many crates have a row of their own.
+/// Number of crates with a row of their own.
 const ROWS: usize = 24;
 
 /// Measures the first build, and a build after each edit, which stay.

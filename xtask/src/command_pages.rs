@@ -93,7 +93,7 @@ pub(crate) fn parts(help: &str) -> Vec<&str> {
 /// The heading of the parts of a command.
 const PARTS: &str = "Benchmarks:";
 
-/// What the lines that follow belong to.
+/// Block to which the lines that follow belong.
 #[derive(Clone, Copy, PartialEq)]
 enum Block {
     Text,

@@ -112,7 +112,7 @@ fn bilux(arguments: &[&str]) -> Result<String> {
     output(Command::new(target_folder().join("debug").join("bilux")).args(arguments))
 }
 
-/// What else a row says, as a list: headings with words.
+/// Further words of a row, as a list: headings with words.
 fn details(row: &Value) -> String {
     let mut list = String::new();
     for (heading, words) in

@@ -48,7 +48,7 @@ struct Arguments<'a> {
     more: &'a [String],
 }
 
-/// Where bugs are planted.
+/// Lines in which bugs are planted.
 #[derive(Debug, PartialEq)]
 enum Lines<'a> {
     /// In what has changed since this commit.
@@ -62,9 +62,9 @@ enum Lines<'a> {
 struct Part {
     /// The place of its crate in the table.
     row: usize,
-    /// Its number among the parts of the crate, from 0.
+    /// Number among the parts of the crate, from 0.
     number: usize,
-    /// How many parts the crate has.
+    /// Number of parts of the crate.
     of: usize,
 }
 

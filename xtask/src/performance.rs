@@ -17,9 +17,9 @@ use std::process::Command;
 /// The pages with figures, relative to the root of the repository.
 pub(crate) const PAGES: &[&str] = &["README.md", "docs/performance.md"];
 
-/// What begins the comment that names a benchmark.
+/// Beginning of the comment that names a benchmark.
 const COMMENT: &str = "<!-- figures: ";
-/// What separates the command from the words of the lines that a page wants.
+/// Separator between the command and the words of the lines that a page wants.
 const ONLY: &str = "; only: ";
 const BEFORE: &str = "```text\n";
 const AFTER: &str = "\n```";
@@ -30,15 +30,15 @@ pub(crate) struct Figures<'a> {
     pub(crate) command: &'a str,
     /// Words of which the page wants the lines; none for all lines.
     only: Option<&'a str>,
-    /// What it printed, after a line that names the machine and the day.
+    /// Output of the command, after a line that names the machine and the day.
     pub(crate) printed: &'a str,
-    /// Where on the page that is, in bytes.
+    /// Offset of the output on the page, in bytes.
     start: usize,
     /// The number of the comment's line, from 1.
     pub(crate) line: usize,
 }
 
-/// What a command needs that is not ours: the word in it, and what stands for the word on this machine.
+/// Programs of others that a command needs: the word in it, and what stands for the word on this machine.
 struct Peers(Vec<(&'static str, String)>);
 
 /// Measures, and rewrites the pages.
@@ -81,13 +81,13 @@ pub(crate) fn all(text: &str) -> Vec<Figures<'_>> {
     figures.collect()
 }
 
-/// How many benchmarks a page names, well-formed or not.
+/// Number of benchmarks that a page names, well-formed or not.
 pub(crate) fn named(text: &str) -> usize {
     text.lines().filter(|line| line.starts_with(COMMENT)).count()
 }
 
 impl Figures<'_> {
-    /// What the page shows of all that the command printed: the first three lines are the machine, the title and the names
+    /// Lines that the page shows of all that the command printed: the first three lines are the machine, the title and the names
     /// of the columns, and the last ones are notes, which belong to the whole table only.
     pub(crate) fn shown(&self, whole: &str) -> String {
         let Some(only) = self.only else { return whole.to_owned() };

@@ -14,14 +14,14 @@ const PACKAGE: &str = "crates/python";
 /// The oldest Python that it works with.
 const OLDEST: (u32, u32) = (3, 10);
 
-/// What builds a wheel.
+/// Packages that build a wheel.
 const BUILDERS: &[&str] = &["maturin>=1.7,<2"];
 
-/// What the tests use.
+/// Packages that the tests use.
 const TESTERS: &[&str] = &["numpy", "pytest", "mypy", "trimesh", "rtree", "scipy", "tqdm"];
 
-/// What only some tests use, which skip aloud where it cannot be had: what runs jobs for farms, notebooks, their widgets,
-/// plots, videos, the renderer that one page compares with, and what reads EXR files as compositors do.
+/// Packages that only some tests use, which skip aloud where they cannot be had: what runs jobs for farms, notebooks, their
+/// widgets, plots, videos, the renderer that one page compares with, and what reads EXR files as compositors do.
 const EXTRAS: &[&str] = &[
     "openjd-cli",
     "nbclient ipykernel",
@@ -32,7 +32,7 @@ const EXTRAS: &[&str] = &[
     "OpenEXR OpenImageIO mmh3",
 ];
 
-/// What the tests of clusters use.
+/// Packages that the tests of clusters use.
 const CLUSTER_TESTERS: &[&str] = &["numpy", "pytest", "ray>=2.9"];
 
 /// The tests of clusters.
@@ -70,7 +70,7 @@ pub(crate) fn prepare() -> Result<()> {
     Ok(())
 }
 
-/// What builds the package, and what tests it.
+/// Environments that build the package and that test it.
 fn environments() -> Result<(Environment, Environment)> {
     let python = python()?;
     let testers = Environment::new(&python, "test", TESTERS, EXTRAS)?;
@@ -329,7 +329,7 @@ impl Environment {
         ["pyvenv.cfg", "packages.txt"].map(|name| folder.join(name)).into_iter().filter(|path| path.exists())
     }
 
-    /// Its Python, in the root of the repository, without influence from the user's own packages.
+    /// Python of the environment, in the root of the repository, without influence from the user's own packages.
     pub(crate) fn python(&self) -> Command {
         let mut command = Command::new(&self.interpreter);
         command.current_dir(root()).env_remove("PYTHONPATH");

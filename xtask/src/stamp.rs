@@ -1,4 +1,4 @@
-//! What a check has passed with, so that it need not run again before something of that changes.
+//! Inputs with which a check has passed, so that it need not run again before something of them changes.
 
 use crate::process::target_folder;
 use anyhow::{Context, Result};

@@ -15,7 +15,7 @@ pub(crate) const FILE: &str = "crates/testing/verdicts.txt";
 /// The file of budgets.
 pub(crate) const BUDGETS: &str = "crates/testing/budgets.txt";
 
-/// What the tests of a crate may grow to.
+/// Limits to the growth of a crate's tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Budget<'a> {
     /// The crate.
@@ -135,7 +135,7 @@ fn record(suite: &Suite, records: &mut Records) -> Result<()> {
     Ok(())
 }
 
-/// What is new, gone, or otherwise than before, in these suites.
+/// Records of these suites that are new, gone, or otherwise than before.
 fn differences(known: &Records, found: &Records, suites: &[&str]) -> Vec<String> {
     let keys = |records: &Records| -> BTreeSet<Key> {
         records.verdicts.keys().filter(|key| suites.contains(&key.suite.as_str())).cloned().collect()

@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use std::fs;
 use std::process::Command;
 
-/// What drives browsers, which downloads none by itself; and what checks that everybody can use the page.
+/// Packages that drive browsers, of which they download none themselves, and that check that everybody can use the page.
 const DRIVERS: &[&str] = &["playwright", "axe-playwright-python"];
 
 /// The names of Chromium on various systems.

@@ -1,4 +1,4 @@
-//! How fast trees over teapots are built, and how large they become.
+//! Time to build trees over teapots, and the size of these trees.
 
 use crate::accels::{find, threads};
 use crate::{Options, ProgressFn, Report, median, table, timed};

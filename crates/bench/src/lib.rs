@@ -27,7 +27,7 @@ pub type ProgressFn<'a> = &'a dyn Fn(&str);
 pub struct Report {
     /// One JSON object per row.
     pub rows: Vec<Value>,
-    /// The same as text.
+    /// The rows as text.
     pub text: String,
     /// A picture of what was rendered, if there is one.
     pub picture: Option<Picture>,

@@ -1,4 +1,4 @@
-//! How fast scene files are read, and how much memory that takes compared with the size of the scene.
+//! Time to read scene files, and the memory that it takes compared with the size of the scene.
 
 mod made;
 
@@ -15,7 +15,7 @@ use std::time::Instant;
 
 pub use made::make;
 
-/// What to read, and how.
+/// Files to read, and options for reading.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// The scene files.

@@ -1,4 +1,4 @@
-//! What the alpha of a material does.
+//! Opacity of a material by its alpha.
 
 use super::draft::{Alpha, Draft};
 use super::json::JsonNode;

@@ -19,7 +19,7 @@ pub(super) struct Pose {
 /// Values, and what they are of.
 type Moved = Vec<(Target, Vec<f64>)>;
 
-/// What a channel animates.
+/// Target of a channel.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 struct Target {
     /// The index of the node.
@@ -37,7 +37,7 @@ pub(super) enum AnimatedProperty {
     Visible,
 }
 
-/// How a sampler interpolates between keys.
+/// Interpolation of a sampler between keys.
 #[derive(Clone, Copy, PartialEq)]
 enum Interpolation {
     Step,

@@ -85,7 +85,7 @@ impl<'a> Document<'a> {
         Ok(document)
     }
 
-    /// The same document with data for accessors that lie in no buffer.
+    /// This document with data for accessors that lie in no buffer.
     #[cfg(feature = "draco")]
     pub(super) fn with_drawn(self, drawn: HashMap<usize, DecodedAccessor>) -> Document<'a> {
         Document { drawn, ..self }

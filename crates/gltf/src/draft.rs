@@ -13,12 +13,12 @@ pub(super) struct Draft<'a, 'o> {
     pub(super) alpha: Alpha,
     /// The sets of texture coordinates in use so far.
     pub(super) uv_sets: UvSets,
-    /// Where the material is.
+    /// Facts about the mesh that the material is on.
     pub(super) on: OnMesh,
     pub(super) textures: Textures<'a, 'o>,
 }
 
-/// What a material has to know of the mesh that it is on.
+/// Facts that a material has to know of the mesh that it is on.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct OnMesh {
     /// True if transmission without a thickness means a solid.
@@ -27,13 +27,13 @@ pub(super) struct OnMesh {
     pub(super) has_alpha: bool,
 }
 
-/// What alpha does to a surface.
+/// Effect of alpha on a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum Alpha {
     /// Nothing.
     #[default]
     Opaque,
-    /// It is the opacity.
+    /// Alpha is the opacity.
     Blend,
     /// Below this the surface is not there, elsewhere it is opaque.
     Mask(f32),

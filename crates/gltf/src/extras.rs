@@ -1,4 +1,4 @@
-//! What Bilux itself writes into the `extras` of its files, and reads there.
+//! Keys that Bilux itself writes into the `extras` of its files, and reads there.
 
 /// The key in those of a scene that records its surroundings: "none" beyond the file's lights.
 pub(super) const SURROUNDINGS: &str = "surroundings";

@@ -19,7 +19,7 @@ struct Mapped<T> {
 }
 
 impl<T> Mapped<T> {
-    /// The same without the texture's placement.
+    /// The value without the texture's placement.
     fn unplaced(self) -> Mapped<T> {
         Mapped { map: self.map.map(|map| Texture { transform: None, ..map }), ..self }
     }

@@ -14,13 +14,13 @@ use bilux_math::{DMat4, DVec3};
 #[derive(Clone, Copy)]
 pub(super) struct Placed<'d> {
     pub(super) node: JsonNode<'d>,
-    /// Its index in the file.
+    /// Index of the node in the file.
     pub(super) index: usize,
     /// The transform from its space to world space.
     pub(super) world: DMat4,
     /// Whether its mesh and its lights are shown; cameras always are. [KHR_node_visibility]
     pub(super) is_visible: bool,
-    /// What kind of thing it is, by its own `extras` or else those of its parents; empty for none.
+    /// Kind of thing that the node is, by its own `extras` or else those of its parents; empty for none.
     pub(super) category: &'d str,
 }
 
@@ -81,7 +81,7 @@ impl<'d> Graph<'d> {
     }
 }
 
-/// What kind of thing a node or a mesh is, if its `extras` say it. Extras are anybody's own, so what is no text is no mistake.
+/// Kind of thing that a node or a mesh is, if its `extras` say it. Extras are anybody's own, so what is no text is no mistake.
 pub(super) fn category<'d>(holder: JsonNode<'d>) -> Option<&'d str> {
     holder.get("extras")?.get(CATEGORY)?.as_text().ok()
 }

@@ -39,7 +39,7 @@ impl<'a> JsonNode<'a> {
         next
     }
 
-    /// Its location: the file, and after `#` the pointer.
+    /// Location of the value: the file, and after `#` the pointer.
     pub(super) fn at(&self) -> Span {
         let mut place = format!("{}#", self.file);
         for step in &self.path[..self.length] {
@@ -77,7 +77,7 @@ impl<'a> JsonNode<'a> {
         self.value
     }
 
-    /// Its index in the list that contains it.
+    /// Index of the value in the list that contains it.
     pub(super) fn number_in_list(&self) -> Option<usize> {
         match self.path[..self.length].last() {
             Some(Step::Index(index)) => Some(*index),

@@ -23,7 +23,7 @@ use std::f64::consts::TAU;
 /// A material with what its primitives need to know.
 #[derive(Clone, Copy)]
 pub(super) struct UsedMaterial {
-    /// Its index in the scene.
+    /// Index of the material in the scene.
     pub(super) index: usize,
     /// The sets of texture coordinates that its textures use.
     pub(super) uv_sets: UvSets,
@@ -33,7 +33,7 @@ pub(super) struct UsedMaterial {
     pub(super) normal_by_second: bool,
     /// True if it emits its colour, which vertices tint.
     pub(super) is_unlit: bool,
-    /// What the alpha of vertices does.
+    /// Effect of the alpha of vertices.
     pub(super) alpha: Alpha,
 }
 

@@ -8,7 +8,7 @@ use super::variants::Variants;
 use bilux_import::input::reading::Reading;
 use bilux_import::{FormatError, input::oddities::Oddities};
 
-/// What is read of a document before anything is placed.
+/// Parts of a document that are read before anything is placed.
 pub(super) struct Posed<'d> {
     pub(super) document: &'d Document<'d>,
     pub(super) variants: Variants,

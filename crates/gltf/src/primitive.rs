@@ -26,7 +26,7 @@ pub(super) struct Part {
     pub(super) material: usize,
 }
 
-/// What a node adds to its mesh.
+/// Attributes that a node adds to its mesh.
 pub(super) struct NodeMesh<'a> {
     pub(super) name: &'a str,
     /// The weights of the morph targets.

@@ -10,7 +10,7 @@ use bilux_math::Rgb;
 use bilux_math::transcendental::ln;
 use bilux_scene::Value;
 
-/// What either extension says.
+/// Values that either extension states.
 struct Scattering {
     strength: f32,
     colour: Rgb,

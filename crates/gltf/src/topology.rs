@@ -1,4 +1,4 @@
-//! How vertices form triangles, lines and points.
+//! Topologies: vertices that form triangles, lines and points.
 
 use super::data::DataReader;
 use super::json::JsonNode;

@@ -9,7 +9,7 @@ use bilux_import::bytes::spellings::{percent_decoded, spellings};
 use bilux_import::input::reading::{Reading, Source};
 use std::borrow::Cow;
 
-/// What a URI refers to.
+/// Resource that a URI refers to.
 pub(super) enum Resource {
     /// The bytes embedded in a data URI.
     Data(Vec<u8>),
@@ -51,7 +51,7 @@ pub(super) fn data(uri: &str) -> Option<(&str, &str)> {
     without_scheme(uri, "data:")?.split_once(',')
 }
 
-/// What follows a scheme, in upper or lower case. [Berners-Lee 2005, 3.1]
+/// The rest of a URI after a scheme, in upper or lower case; `None` for other URIs. [Berners-Lee 2005, 3.1]
 fn without_scheme<'u>(uri: &'u str, scheme: &str) -> Option<&'u str> {
     uri.get(..scheme.len()).filter(|start| start.eq_ignore_ascii_case(scheme)).map(|_| &uri[scheme.len()..])
 }

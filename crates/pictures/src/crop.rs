@@ -1,4 +1,4 @@
-//! Where a part of a picture belongs.
+//! Place of a picture in a larger one.
 
 /// The place of a picture in a larger one: the data window of an EXR in its display window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

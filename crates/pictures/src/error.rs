@@ -11,13 +11,13 @@ pub enum PictureError {
     InFile {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The error in the file.
         source: Box<PictureError>,
     },
     /// The operating system reported an error.
     #[error("cannot {action}: {}", reason(source))]
     Io {
-        /// What was attempted.
+        /// The attempted action, a verb with its object.
         action: &'static str,
         /// Why it failed.
         source: std::io::Error,
@@ -59,11 +59,11 @@ pub enum PictureError {
     /// The file is in a format that other programs read.
     #[error("this is {what}{}: {advice}; picture formats that can be read are: {known}", if *is_picture { "" } else { ", not a picture" })]
     Foreign {
-        /// What it is, such as `a GIF picture`.
+        /// Kind of the file, such as `a GIF picture`.
         what: &'static str,
         /// Whether it is a picture.
         is_picture: bool,
-        /// What to do with it.
+        /// Advice on using the file.
         advice: &'static str,
         /// The names of the formats that can be read.
         known: String,
@@ -99,7 +99,7 @@ pub enum PictureError {
         format: &'static str,
         /// The feature that the file uses.
         what: String,
-        /// What to do instead.
+        /// Advice on an alternative.
         advice: &'static str,
     },
     /// The picture would take more memory than the limit allows.
@@ -138,13 +138,13 @@ pub enum PictureError {
     Unwritable {
         /// The format.
         format: &'static str,
-        /// What the format cannot hold, or what it needs and the picture lacks, and what to do.
+        /// The feature that the format cannot hold, or that it needs and the picture lacks, and advice.
         what: String,
     },
     /// The requested denoiser is not available, or does not work.
     #[error("cannot denoise: {what}")]
     NoDenoiser {
-        /// What is missing, and how to get it; or what went wrong.
+        /// The missing part, and how to get it; or the failure.
         what: String,
     },
     /// A picture was assembled incorrectly.
@@ -178,7 +178,7 @@ impl PictureError {
         PictureError::Truncated { format, part: part.into() }
     }
 
-    /// The same error, with the file that caused it.
+    /// This error with the file that caused it.
     pub fn in_file(self, path: &Path) -> PictureError {
         match self {
             PictureError::InFile { .. } => self,

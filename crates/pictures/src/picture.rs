@@ -28,7 +28,7 @@ pub struct Picture {
     pub metadata: BTreeMap<String, String>,
     /// Which part of a larger picture this is, if it is one. Only EXR stores it.
     pub crop: Option<Crop>,
-    /// What is wrong with the file that it was read from, though it could be read.
+    /// Faults of the file that the picture was read from, though it could be read.
     pub warnings: Vec<String>,
 }
 
@@ -248,7 +248,7 @@ impl Picture {
         self.like_rows(self.height)
     }
 
-    /// The same with a number of rows.
+    /// A picture of the same width and meaning and a number of rows, without planes and metadata.
     pub(crate) fn like_rows(&self, height: usize) -> Picture {
         Picture {
             width: self.width,

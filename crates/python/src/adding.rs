@@ -1,4 +1,4 @@
-//! What is added to a scene: meshes from arrays, and the materials and textures that specs name.
+//! Additions to a scene: meshes from arrays, and the materials and textures that specs name.
 
 use crate::arrays;
 use crate::texture::Texture;

@@ -99,7 +99,7 @@ impl Points<'_> {
     }
 }
 
-/// What [`Points`] hold.
+/// Rows of [`Points`].
 #[derive(Clone, Copy)]
 pub(crate) enum Rows<'a> {
     Singles(&'a [[f32; 3]]),

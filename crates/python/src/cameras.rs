@@ -1,4 +1,4 @@
-//! Where cameras see points, and the rays of pixels, as arrays.
+//! Projections of points by cameras, and the rays of pixels, as arrays.
 
 use crate::arrays::{self, numbers, shape_of};
 use crate::errors::of_scene;
@@ -45,7 +45,7 @@ impl Measuring {
         Ok(Measuring { camera, size: DVec2::new(f64::from(width), f64::from(height)), time })
     }
 
-    /// What is odd about its pictures.
+    /// Oddities of the camera's pictures.
     pub(crate) fn oddities(&self) -> Vec<String> {
         self.camera.warnings()
     }

@@ -6,7 +6,7 @@ use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-/// How long the interpreter waits for the callbacks of threads that it will end.
+/// Time that the interpreter waits for the callbacks of threads that it will end.
 const PATIENCE: Duration = Duration::from_secs(2);
 
 /// Whether the interpreter is about to end.

@@ -99,7 +99,7 @@ pub(crate) fn warn(py: Python<'_>, warnings: &[Warning]) -> PyResult<()> {
     warn_of_all(py, warnings.iter().map(ToString::to_string))
 }
 
-/// The same for what is odd about the file of a picture.
+/// Shows oddities of the file of a picture as [`warn`] shows warnings.
 ///
 /// # Errors
 /// As [`warn`].

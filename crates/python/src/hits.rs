@@ -18,7 +18,7 @@ pub(crate) struct HitArrays<'py> {
     normal: Output<'py, f32>,
 }
 
-/// What [`HitArrays`] hold.
+/// Columns of [`HitArrays`].
 pub(crate) struct Columns<'a> {
     pub(crate) t: &'a mut [f32],
     pub(crate) primitive: &'a mut [i64],
@@ -64,7 +64,7 @@ pub(crate) fn rows<T: numpy::Element>(py: Python<'_>, rows: Vec<[T; 3]>) -> PyRe
     Ok(PyArray1::from_vec(py, rows.into_flattened()).reshape([count, 3])?.into_any())
 }
 
-/// What a thread uses again for each batch of rays.
+/// Buffers that a thread uses again for each batch of rays.
 #[derive(Default)]
 pub(crate) struct Buffers {
     pub(crate) rays: Vec<Ray>,
@@ -175,7 +175,7 @@ pub(crate) fn all(
 }
 
 impl AllHits {
-    /// How many there are in all parts.
+    /// Number of hits in all parts.
     pub(crate) fn count(parts: &[AllHits]) -> usize {
         parts.iter().map(|part| part.hits.len()).sum()
     }
@@ -198,7 +198,7 @@ impl AllHits {
     }
 }
 
-/// What all threads find for batches of rays, in their order.
+/// Results of all threads for batches of rays, in the order of the batches.
 pub(crate) fn in_batches<B: Default, T: Send>(
     count: usize,
     find: impl Fn(Range<usize>, &mut B) -> Result<T, NotFinite> + Sync,

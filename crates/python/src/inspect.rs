@@ -1,4 +1,4 @@
-//! What happens behind a picture: one sample, event by event, and what each strategy finds.
+//! Insight into a picture: one sample, event by event, and what each strategy finds.
 
 use crate::building::build;
 use crate::ending::without_gil;

@@ -7,7 +7,7 @@ use bilux::math::{Motion, MotionKey, Transform};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 
-/// How far a matrix may be from translation, rotation and scale, relative to its largest number.
+/// Largest distance of a matrix from translation, rotation and scale, relative to its largest number.
 const TOLERANCE: f64 = 1e-4;
 
 /// Moves an object through the transforms at these times.

@@ -122,7 +122,7 @@ pub(crate) fn layers_of(py: Python<'_>, picture: &Picture) -> PyResult<Vec<Layer
     Ok(layers)
 }
 
-/// What is before the last dot of a channel's name, and what is after it; some channels are of the main picture.
+/// The parts of a channel's name before and after its last dot; some channels are of the main picture.
 fn placed<'n>(channel: &'n str, main: &[&str]) -> (&'n str, &'n str) {
     match channel.rsplit_once('.') {
         Some(place) => place,

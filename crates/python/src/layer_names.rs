@@ -25,7 +25,7 @@ pub(crate) enum Meaning<'n> {
     Stack(&'static str),
 }
 
-/// What a name stands for: a layer, also by the name that files give it, or all layers of an AOV.
+/// Meaning of a name: a layer, also by the name that files give it, or all layers of an AOV.
 pub(crate) fn meaning(name: &str) -> Meaning<'_> {
     let Some(row) = AOVS.iter().find(|row| is_name(row, name)) else { return Meaning::Layer(name) };
     match STACKS.iter().find(|(aov, _)| *aov == row.aov) {

@@ -9,7 +9,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
-/// Where a scene came from, and how it was read.
+/// Origin of a scene, and the options with which it was read.
 #[derive(Clone)]
 pub(crate) struct Origin {
     pub(crate) source: Source,
@@ -75,7 +75,7 @@ pub(crate) fn loaded(py: Python<'_>, origin: &Origin) -> PyResult<SceneBuilder> 
     Ok(scene)
 }
 
-/// How to read glass whose thickness a file does not give.
+/// The way of reading glass whose thickness a file does not give.
 ///
 /// # Errors
 /// If there is no such way.

@@ -1,4 +1,4 @@
-//! How much memory a call may take: no more than the system leaves this process, so that a lack of it is an exception. Rust
+//! Limits on a call's memory: no more than the system leaves this process, so that a lack of it is an exception. Rust
 //! aborts where memory runs out, and the interpreter with it.
 
 use bilux::memory_limit::MemoryLimit;

@@ -25,12 +25,12 @@ impl<'py, T: Element> Output<'py, T> {
         Ok(Output(array.cast_into::<numpy::PyArrayDyn<T>>()?.readwrite()))
     }
 
-    /// Its numbers, row by row.
+    /// Numbers of the array, row by row.
     pub(crate) fn numbers(&mut self) -> &mut [T] {
         self.0.as_slice_mut().unwrap_or_default()
     }
 
-    /// Its rows of three.
+    /// Rows of three numbers.
     pub(crate) fn triples(&mut self) -> &mut [[T; 3]] {
         self.numbers().as_chunks_mut().0
     }

@@ -1,4 +1,4 @@
-//! How a picture is shown, as plain Python values, for `pickle` and `copy`.
+//! Display options of a picture, as plain Python values, for `pickle` and `copy`.
 
 use bilux::Display;
 use bilux::math::Rgb;

@@ -28,7 +28,7 @@ pub(crate) struct PlacedMesh {
     planes: Vec<Plane>,
     /// The corners of the bounding box.
     bounds: [DVec3; 2],
-    /// How far hits are from each other, in lengths of the box, that are at the same place.
+    /// Distance between hits up to which they are at the same place, in lengths of the box.
     same_place: f32,
 }
 
@@ -156,7 +156,7 @@ impl PlacedMesh {
     }
 }
 
-/// Where a ray crosses the surface.
+/// Crossing of a ray and the surface.
 #[derive(Clone, Copy)]
 struct Crossing {
     ray: usize,
@@ -204,7 +204,7 @@ impl PlacedMesh {
         })
     }
 
-    /// Where a ray meets the plane of a triangle, in 64-bit floats.
+    /// Point at which a ray meets the plane of a triangle, in 64-bit floats.
     fn position(&self, rays: &Rays<'_>, crossing: Crossing) -> [f64; 3] {
         let [origin, direction] = rays.given(crossing.ray).map(DVec3::from);
         let Plane { normal, distance } = &self.planes[crossing.triangle as usize];

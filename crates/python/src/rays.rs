@@ -55,7 +55,7 @@ impl<'py> RayArrays<'py> {
     }
 }
 
-/// What the arrays of rays mean.
+/// Meaning of the arrays of rays.
 #[derive(Clone, Copy)]
 pub(crate) enum Meaning {
     /// Origins and directions.
@@ -66,10 +66,10 @@ pub(crate) enum Meaning {
     Placed(Placement),
 }
 
-/// How a mesh was brought into its box.
+/// Placement of a mesh in its box.
 #[derive(Clone, Copy)]
 pub(crate) struct Placement {
-    /// What is subtracted from positions.
+    /// Position that is subtracted from others.
     pub(crate) origin: [f64; 3],
     /// By what they are then multiplied.
     pub(crate) scale: f64,

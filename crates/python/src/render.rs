@@ -215,7 +215,7 @@ fn push_made_later(
     Ok((!names.is_empty()).then(|| Warning { message, at: Span::default() }))
 }
 
-/// What the picture's `info` says.
+/// Contents of the picture's `info`.
 fn info<'py>(py: Python<'py>, rendered: &Rendered, begun: Instant) -> PyResult<Bound<'py, PyDict>> {
     let info = PyDict::new(py);
     let outcome = &rendered.outcome;

@@ -1,4 +1,4 @@
-//! What a call asks for, in the terms of the library.
+//! Requests of calls, in the terms of the library.
 
 use crate::errors::of_scene;
 use crate::loading::Origin;
@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::time::Instant;
 
-/// What a call asks for.
+/// Request of a call.
 #[derive(Clone)]
 pub(crate) struct Request {
     /// Settings that take precedence over those of the scene.
@@ -29,9 +29,9 @@ pub(crate) struct Request {
     pub(crate) loaded_at: f32,
     /// When the call began.
     pub(crate) begun: Instant,
-    /// What the picture has in common with others.
+    /// Parts that the picture has in common with others.
     pub(crate) series: Series,
-    /// Where the scene came from, for the layers of motion of meshes that move by themselves.
+    /// Origin of the scene, for the layers of motion of meshes that move by themselves.
     pub(crate) origin: Option<Origin>,
     /// The scene in the next frame and in the previous one, if they were given.
     pub(crate) others: [Option<SceneBuilder>; 2],
@@ -57,7 +57,7 @@ impl Request {
         Ok(Request { user, aovs, crop, fast, max_memory, loaded_at, begun, series, origin, others })
     }
 
-    /// What is asked of the job, with the limits that apply.
+    /// Request for the job, with the limits that apply.
     pub(crate) fn of_job(&self, user: &Parameters, settings: &Settings) -> Result<JobRequest, bilux::Error> {
         let asked = JobRequest::from(user)
             .in_series(self.series.clone())

@@ -33,7 +33,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 #[derive(Default)]
 pub(crate) struct Scene {
     builder: Mutex<SceneBuilder>,
-    /// What renders have built. Locked only without the GIL, and while a render builds.
+    /// Parts that renders have built. Locked only without the GIL, and while a render builds.
     pub(crate) built: Mutex<Built>,
     /// The file that it was read from; nothing knows it after pickling.
     origin: Mutex<Option<Origin>>,

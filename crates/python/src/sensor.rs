@@ -11,7 +11,7 @@ use bilux::sensing::Sensing;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// What a sensor makes of light, how that is shown, if not as the light is, and what is known of it; see `Picture.sensor`.
+/// A sensor's picture of light, its display options, if they are not those of the light, and its info; see `Picture.sensor`.
 pub(crate) fn sensed(
     py: Python<'_>,
     light: &Picture,

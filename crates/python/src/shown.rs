@@ -1,4 +1,4 @@
-//! How pictures are prepared for a display when a call says so.
+//! Display options of pictures, as calls state them.
 
 use crate::errors::of_picture;
 use bilux::Display;
@@ -6,7 +6,7 @@ use bilux::pictures::tone_map;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-/// How a picture is shown, with what a call says.
+/// Display options of a picture, with what a call says.
 ///
 /// # Errors
 /// If there is no such tone curve, or the exposure is none.

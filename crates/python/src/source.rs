@@ -1,4 +1,4 @@
-//! Where the bytes of a file come from: a path, the bytes themselves, or an open file.
+//! Sources of a file's bytes: a path, the bytes themselves, or an open file.
 
 use crate::ending::without_gil;
 use crate::errors::of_picture;
@@ -13,10 +13,10 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// How many bytes are read from an open file at a time.
+/// Number of bytes that are read from an open file at a time.
 const CHUNK: usize = 16 << 20;
 
-/// What messages call bytes without a name.
+/// Name in messages of bytes without a name.
 const UNNAMED: &str = "(bytes)";
 
 /// A file that was given.
@@ -34,8 +34,8 @@ pub(crate) enum Source {
 }
 
 impl Source {
-    /// What an argument gives: a path, bytes, or a file that is open in binary mode, from where it is to its end, but not
-    /// many more bytes than `most`.
+    /// The source that an argument gives: a path, bytes, or a file that is open in binary mode, from where it is to its end, but
+    /// not many more bytes than `most`.
     ///
     /// # Errors
     /// If it is none of these, or the file is open as text, or gives no bytes; and whatever reading it raises.
@@ -61,7 +61,7 @@ impl Source {
         Ok(Source::Bytes { bytes: read_all(argument, given, most)?, name })
     }
 
-    /// The same with the bytes of a picture's file in place of its path, but not many more than `most`.
+    /// This source with the bytes of a picture's file in place of its path, but not many more than `most`.
     ///
     /// # Errors
     /// If it cannot be read.
@@ -175,7 +175,7 @@ fn read_all(argument: &str, file: &Bound<'_, PyAny>, most: u64) -> PyResult<Arc<
     Ok(all.into())
 }
 
-/// Where a picture goes.
+/// Destination of a picture.
 pub(crate) enum Sink<'py> {
     /// To the file at this path, whose extension says the format.
     Path(PathBuf),
@@ -186,7 +186,7 @@ pub(crate) enum Sink<'py> {
 }
 
 impl<'py> Sink<'py> {
-    /// What an argument gives: a path, or a file that is open for writing in binary mode.
+    /// The destination that an argument gives: a path, or a file that is open for writing in binary mode.
     ///
     /// # Errors
     /// If it is neither.

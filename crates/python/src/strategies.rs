@@ -1,4 +1,4 @@
-//! What each strategy of an integrator finds, as layers of a picture.
+//! Pictures of the strategies of an integrator, as layers of a picture.
 
 use bilux::Job;
 use bilux::strategies::Light;

@@ -67,7 +67,7 @@ pub(crate) struct Grid(pub(crate) Arc<bilux::scene::media::Grid>);
 #[pyclass(frozen, module = "bilux")]
 pub(crate) struct IntensityDistribution(pub(crate) Arc<bilux::scene::IntensityDistribution>);
 
-/// Where values may name textures and materials.
+/// Resolver of the textures and materials that values name.
 pub(crate) trait Resolve {
     /// The index of a texture.
     fn texture(&mut self, texture: &Texture) -> usize;
@@ -111,14 +111,14 @@ impl Spec {
         Ok(Spec { keyframes: keyframes?, ..Spec::of(py, "cameras", &camera.spec, scene)? })
     }
 
-    /// The same for a scene, with textures and materials as indices.
+    /// The spec for a scene, with textures and materials as indices.
     pub(crate) fn resolved(&self, py: Python<'_>, resolve: &mut dyn Resolve) -> PyResult<bilux::scene::Spec> {
         let mut spec = bilux::scene::Spec::new(&self.name, &self.kind);
         spec.parameters = parameters(self.parameters.bind(py), resolve)?;
         Ok(spec)
     }
 
-    /// The same of a camera, with its keyframes.
+    /// The camera for a scene, with its keyframes.
     pub(crate) fn camera(&self, py: Python<'_>, resolve: &mut dyn Resolve) -> PyResult<CameraSpec> {
         let mut camera = CameraSpec::new(self.resolved(py, resolve)?);
         for (time, changes) in &self.keyframes {

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
-/// How often signals are looked for and callbacks called.
+/// Interval at which signals are looked for and callbacks called.
 const EVERY: Duration = Duration::from_millis(50);
 
 /// Counts the work that is done, and says whether to stop.
@@ -37,7 +37,7 @@ impl Progress for Watch {
     }
 }
 
-/// What stopped the work early.
+/// Reason for which the work stopped early.
 pub(crate) enum Stopped {
     /// Nothing did.
     No,

@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// Triangles that share a look.
 #[derive(Clone)]
 pub(super) struct Piece {
-    /// What the file says of these faces; `None` for the look of what they are in.
+    /// Style that the file gives these faces; `None` for the look of what they are in.
     pub(super) style: Option<Style>,
     pub(super) mesh: Arc<Mesh>,
 }

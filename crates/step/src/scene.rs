@@ -14,7 +14,7 @@ use bilux_math::Transform;
 use bilux_scene::{Object, SceneBuilder, Spec};
 use std::collections::{HashMap, HashSet};
 
-/// How names of STEP files end.
+/// Extensions of STEP files.
 pub(super) const EXTENSIONS: &[&str] = &["step", "stp", "p21"];
 
 pub(super) fn scene(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {

@@ -1,6 +1,6 @@
 //! The short and the long form of tests.
 
-/// What a test takes in its short form, and in its long one, the step `long-suites`: see `docs/trust.md`.
+/// Effort of a test in its short form, and in its long one, the step `long-suites`: see `docs/trust.md`.
 pub fn effort<T>(short: T, long: T) -> T {
     if is_long() { long } else { short }
 }

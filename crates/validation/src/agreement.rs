@@ -35,19 +35,19 @@ pub const PICTURES: usize = 32;
 /// Side of a block, in pixels.
 pub const BLOCK: usize = 8;
 
-/// Where one standard error exceeds this fraction of the light, too little has been found for a decision.
+/// Largest standard error for a decision, as a fraction of the light: beyond it, too little has been found.
 const COARSE: f64 = 0.03;
 
 /// A technique for finding light.
 #[derive(Clone, Debug)]
 pub struct Technique {
-    /// Its name.
+    /// Name of the technique.
     pub name: &'static str,
     /// The integrator and its parameters.
     pub spec: Spec,
-    /// It finds what lights without extent send through mirrors and glass.
+    /// True if the technique finds the light that lights without extent send through mirrors and glass.
     pub finds_points: bool,
-    /// It finds what is seen in mirrors or through glass.
+    /// True if the technique finds what is seen in mirrors or through glass.
     pub finds_mirrored: bool,
 }
 
@@ -66,7 +66,7 @@ pub fn techniques() -> Vec<Technique> {
 
 /// A scene to be rendered at a small size.
 pub struct Stage {
-    /// Its name.
+    /// Name of the stage.
     pub name: String,
     /// Scene and camera.
     pub scene: Scene,

@@ -47,7 +47,7 @@ impl From<Bsdf> for Scatterer {
     }
 }
 
-/// What a BSDF promises beyond the contract that holds for all.
+/// Promises of a BSDF beyond the contract that holds for all.
 #[derive(Clone, Copy, Debug)]
 pub struct Promise {
     /// eval(a, b)·|cos a| = eval(b, a)·|cos b|.
@@ -67,7 +67,7 @@ pub const CHECKS: [(&str, Check); 7] = [
     ("lobes with zero probability give no samples", samples_are_sound),
 ];
 
-/// Those of many samples, whose verdicts are remembered.
+/// Checks of many samples, whose verdicts are remembered.
 const OF_MANY_SAMPLES: [&str; 3] = ["samples follow the pdf", "radiance and importance agree", "energy"];
 
 /// One check; an error describes what is wrong.
@@ -130,7 +130,7 @@ const IMPORTANCE: TransportMode = TransportMode::Importance;
 const SAMPLES: u64 = 60_000;
 /// Probability of a false alarm of one suite over all its directions, divided evenly among them.
 const SIGNIFICANCE: f64 = 1e-4;
-/// How many directions are tested.
+/// Number of directions tested.
 const DIRECTIONS_TESTED: usize = 5;
 
 /// Test directions: above and below the surface, steep and grazing.
@@ -247,7 +247,7 @@ pub fn reciprocity_or_adjoint(s: &Scatterer, promise: Promise) -> Result<(), Str
     Ok(())
 }
 
-/// What measures and what shines: broad shapes about each of the known directions.
+/// Values of broad shapes about each of the known directions: of what measures, and of what shines.
 fn shapes(d: Vec3) -> [f64; DIRECTIONS_TESTED] {
     known_directions().map(|about| {
         let x = f64::from(1.0 + d.dot(about));

@@ -1,4 +1,4 @@
-//! What every camera promises: it sees a point where its ray through that point began, with the density of its rays
+//! Contract of every camera: it sees a point where its ray through that point began, with the density of its rays
 //! there.
 
 use crate::chi_square::uniforms;
@@ -89,7 +89,7 @@ pub fn rays_come_back(camera: &dyn Camera, time: f32) -> Result<(), String> {
     Ok(())
 }
 
-/// What compositors are told agrees with the rays through the middle of the lens.
+/// Matrices for compositors agree with the rays through the middle of the lens.
 pub fn matrices_see_alike(camera: &dyn Camera, time: f32) -> Result<(), String> {
     let matrices = camera.matrices(time);
     let turning = middle_of_turning_eye(camera, time);

@@ -72,7 +72,7 @@ fn integral(cell: usize, pdf: &impl Fn(Vec3) -> f32) -> f64 {
     if is_smooth { inner.integral } else { Sum::of(cell, fine, fine, pdf).integral }
 }
 
-/// Where midpoints lie along the side of a cell.
+/// Places of midpoints along the side of a cell.
 fn midpoints(count: usize) -> Vec<f32> {
     (0..count).map(|i| (i as f32 + 0.5) / count as f32).collect()
 }
@@ -98,7 +98,7 @@ impl Grid {
     }
 }
 
-/// What the density adds up to in a cell, and how it varies there.
+/// Integral of the density over a cell, and its variation there.
 struct Sum {
     integral: f64,
     mean: f64,

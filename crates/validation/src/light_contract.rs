@@ -1,4 +1,4 @@
-//! What every light promises: it emits what direct sampling of it finds, with the densities that it states.
+//! Contract of every light: it emits what direct sampling of it finds, with the densities that it states.
 
 use crate::chi_square::uniforms;
 use crate::tally::Tally;
@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// A light in a scene at a given time.
 pub struct LightCase {
-    /// Its name.
+    /// Name of the case.
     pub name: String,
     /// The scene; if the light has a surface, that is one of the objects.
     pub scene: Scene,

@@ -21,7 +21,7 @@ pub fn histogram(p_values: &[f64]) -> [usize; 10] {
     bins
 }
 
-/// The same as a line of bars, the highest bin as high as a character.
+/// A histogram as a line of bars, the highest bin as high as a character.
 pub fn bars(bins: &[usize]) -> String {
     const BARS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
     let most = bins.iter().copied().max().unwrap_or(0).max(1);

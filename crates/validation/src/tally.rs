@@ -48,7 +48,7 @@ impl Tally {
         2.0 * Normal::standard().cdf(-deviations)
     }
 
-    /// The same against a known number.
+    /// The p-value of the mean against a known number.
     pub fn p_value_of(&self, known: f64) -> f64 {
         let exact = Tally { count: 1.0, sum: known, squares: 0.0, nonzero: 0 };
         self.p_value(&exact)

@@ -1,4 +1,4 @@
-//! What is released with the binary.
+//! Files that are released with the binary.
 
 use crate::licences::PAGE as NOTICES;
 

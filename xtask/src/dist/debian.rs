@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What the package says about itself.
+/// Properties of the package.
 pub(super) struct Package<'a> {
     pub version: &'a str,
     /// The target's triple.
@@ -61,7 +61,7 @@ fn control(package: &Package, kilobytes: u64) -> String {
     )
 }
 
-/// Where the files of the archive go.
+/// Copies the files of the archive to their places in the package.
 fn lay_out(folder: &Path, tree: &Path) -> Result<()> {
     let doc = tree.join("usr/share/doc/bilux");
     copy(&folder.join("bilux"), &tree.join("usr/bin/bilux"))?;

@@ -18,7 +18,7 @@ use table::{HEAT_MAPS, PICTURES, Scene};
 /// The folder of the pictures, relative to the root of the repository.
 const FOLDER: &str = "docs/gallery";
 
-/// Where things are.
+/// Paths of the program and the scenes.
 struct Studio {
     bilux: PathBuf,
     models: PathBuf,

@@ -6,7 +6,7 @@ use std::fmt::Write;
 /// The number of points.
 const POINTS: u32 = 240_000;
 
-/// How much the shell grows per radian: three times per turn.
+/// Growth of the shell's logarithm per radian: three times per turn.
 const GROWTH: f64 = 0.175;
 
 /// The number of turns.

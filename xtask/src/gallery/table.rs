@@ -2,7 +2,7 @@
 
 use Scene::{BuiltIn, Converted, Made, Model, Page, Repository};
 
-/// What a picture shows.
+/// Scene of a picture.
 #[derive(Clone, Copy)]
 pub(super) enum Scene {
     /// A built-in scene, by the name of the file that `bilux generate` writes.
@@ -21,7 +21,7 @@ pub(super) enum Scene {
 
 /// A picture.
 pub(super) struct Picture {
-    /// Its file in `docs/gallery`.
+    /// File in `docs/gallery`.
     pub(super) file: &'static str,
     pub(super) scene: Scene,
     /// Options of `bilux render`, separated by spaces.
@@ -30,7 +30,7 @@ pub(super) struct Picture {
 
 /// A heat map of the FLIP error of a picture.
 pub(super) struct HeatMap {
-    /// Its file in `docs/gallery`.
+    /// File in `docs/gallery`.
     pub(super) file: &'static str,
     /// Two other pictures of `docs/gallery`.
     pub(super) picture: &'static str,

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// What is handed out: the binary, and the Python package.
+/// Products that are handed out: the binary, and the Python package.
 const PRODUCTS: [&str; 2] = ["bilux-cli", "bilux-python"];
 
 const RULE: &str = "------------------------------------------------------------------------------";

@@ -1,4 +1,4 @@
-//! Where links lead: to another page of the manual, to a picture, or to a file of the repository, which is shown as it
+//! Targets of links: another page of the manual, a picture, or a file of the repository, which is shown as it
 //! is.
 
 use super::page::{Link, Page};

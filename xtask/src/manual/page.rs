@@ -17,7 +17,7 @@ pub(super) struct Link {
 pub(super) struct Section {
     /// The heading, as text.
     pub(super) title: String,
-    /// Its anchor.
+    /// Anchor of the heading.
     pub(super) anchor: String,
     pub(super) level: usize,
     pub(super) text: String,

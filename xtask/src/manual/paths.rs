@@ -1,4 +1,4 @@
-//! Where files of the repository are in the manual, and how links lead to them.
+//! Places of the repository's files in the manual, and the links to them.
 
 use std::collections::BTreeMap;
 
@@ -32,14 +32,14 @@ pub(super) fn rewritten(link: &str, page: &str, is_chapter: impl Fn(&str) -> boo
     relative(&output_path(page), &to) + &anchor
 }
 
-/// Where the manual has a file of the repository: a page is `.html`, and `README.md` is the first of its folder.
+/// Path in the manual of a file of the repository: a page is `.html`, and `README.md` is the first of its folder.
 pub(super) fn output_path(path: &str) -> String {
     let path = path.strip_prefix("docs/").unwrap_or(path);
     let path = path.replace("README.md", "index.md");
     path.strip_suffix(".md").map_or(path.clone(), |stem| format!("{stem}.html"))
 }
 
-/// Where the manual shows a file or a folder that is no chapter.
+/// Path at which the manual shows a file or a folder that is no chapter.
 pub(super) fn source_path(path: &str) -> String {
     format!("source/{path}.html")
 }

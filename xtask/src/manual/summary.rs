@@ -23,9 +23,9 @@ pub(super) struct Part {
 #[derive(Debug, PartialEq)]
 pub(super) struct Chapter {
     pub(super) title: String,
-    /// Its page, as a path from the root of the repository.
+    /// Page of the chapter, as a path from the root of the repository.
     pub(super) path: String,
-    /// How deep it is in the list: 0 for the outermost.
+    /// Depth in the list: 0 for the outermost.
     pub(super) depth: usize,
 }
 

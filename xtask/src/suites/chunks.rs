@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// A process takes about this many CPU seconds, if its tests are known.
 const SECONDS: f64 = 15.0;
 
-/// What a test is taken to need of which nothing is known, in CPU seconds.
+/// CPU seconds that a test is taken to need of which nothing is known.
 const UNKNOWN: f64 = 0.6;
 
 /// Tests of one suite that run in one process, one after the other.
@@ -18,7 +18,7 @@ const UNKNOWN: f64 = 0.6;
 pub(super) struct Chunk {
     pub(super) suite: Arc<Suite>,
     pub(super) tests: Vec<String>,
-    /// What they are expected to take.
+    /// CPU seconds that the tests are expected to take.
     pub(super) seconds: f64,
 }
 

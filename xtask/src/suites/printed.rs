@@ -1,10 +1,10 @@
-//! What a process of tests prints, as it comes.
+//! Output of a process of tests, as it comes.
 
 /// The text so far, and the test that runs.
 #[derive(Debug, Default)]
 pub(super) struct Printed {
     text: String,
-    /// Where the first line begins that has not ended.
+    /// Beginning of the first line that has not ended.
     line: usize,
     running: Option<String>,
     is_closed: bool,
@@ -64,7 +64,7 @@ impl Printed {
         self.is_closed
     }
 
-    /// What failing tests have printed: the first section of failures.
+    /// Output of failing tests: the first section of failures.
     pub(super) fn failures(&self) -> &str {
         let Some(start) = self.text.find("\nfailures:\n") else { return "" };
         let section = &self.text[start + "\nfailures:\n".len()..];

@@ -10,7 +10,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// What happened to the tests of a process.
+/// Outcome of the tests of a process.
 #[derive(Debug, Default)]
 pub(super) struct Outcome {
     /// Tests that passed, and what they took.
@@ -21,7 +21,7 @@ pub(super) struct Outcome {
     pub(super) skipped: Vec<(String, String)>,
     /// Tests that have not run, since an earlier one ended the process.
     pub(super) left: Vec<String>,
-    /// What the failing ones have printed.
+    /// Output of the failing tests.
     pub(super) said: String,
 }
 
@@ -52,7 +52,7 @@ pub(super) fn run(suite: &Suite, tests: &[String], is_long: bool) -> Result<Outc
     Watch::new(child).until_it_ends(tests, limit(is_long))
 }
 
-/// What comes from a process.
+/// Bytes from a process.
 enum Came {
     Output(Vec<u8>),
     Error(Vec<u8>),
@@ -193,7 +193,7 @@ mod tests {
     use std::fs;
     use std::os::unix::fs::PermissionsExt;
 
-    /// What happens to the tests a, b and c of a program that is a script.
+    /// Outcome of the tests a, b and c of a program that is a script.
     fn outcome(name: &str, script: &str, limit: Duration) -> Outcome {
         let folder = crate::process::target_folder().join("tmp");
         fs::create_dir_all(&folder).unwrap();

@@ -5,10 +5,10 @@ use super::process::Outcome;
 use std::fmt;
 use std::time::Duration;
 
-/// How many of the slowest tests are printed.
+/// Number of the slowest tests that are printed.
 const SLOWEST: usize = 10;
 
-/// What has happened so far.
+/// Results so far.
 #[derive(Debug, Default)]
 pub(super) struct Report {
     pub(super) passed: usize,
@@ -42,7 +42,7 @@ impl Report {
         text
     }
 
-    /// What each test took, in seconds.
+    /// Time of each test, in seconds.
     pub(super) fn times(&self) -> impl Iterator<Item = (&str, &str, f64)> {
         self.times.iter().map(|(suite, test, time)| (&**suite, &**test, time.as_secs_f64()))
     }

@@ -12,7 +12,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-/// What runs.
+/// Choice of the tests that run, and their form.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Options {
     /// The packages whose tests run; those of all, if there are none here.
@@ -38,7 +38,7 @@ struct Work {
 
 struct Waiting {
     chunks: Vec<Chunk>,
-    /// Those that need all to be built.
+    /// Chunks that need all to be built.
     for_programs: Vec<Chunk>,
     is_open: bool,
 }
@@ -110,7 +110,7 @@ impl Running {
     }
 }
 
-/// Where the build has failed, what has not begun does not.
+/// Chunks that have not begun do not, where the build has failed.
 impl Drop for Running {
     fn drop(&mut self) {
         let mut waiting = lock(&self.work.waiting);
@@ -159,7 +159,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What each test took when it ran last, for the order of the next run.
+/// File of the times that tests took when they ran last, for the order of the next run.
 fn times_path() -> PathBuf {
     crate::process::target_folder().join("test-times.tsv")
 }

@@ -1,4 +1,4 @@
-//! How many tests passed and failed.
+//! Numbers of tests that passed and failed.
 
 use std::fmt;
 use std::ops::AddAssign;

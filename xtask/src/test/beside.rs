@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 const FLAG: &str = "--beside";
 const BUILT: &str = "--built";
 
-/// What became of a step.
+/// Result of a step.
 pub(super) struct Ended {
     pub(super) report: Report,
     pub(super) totals: Totals,

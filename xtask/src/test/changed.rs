@@ -1,4 +1,4 @@
-//! What has changed since a commit, asked of git: in commits, in the working tree, and in files that git does not know.
+//! Changes since a commit, asked of git: in commits, in the working tree, and in files that git does not know.
 
 use super::reach::Reached;
 use crate::misuse::Misuse;
@@ -8,10 +8,10 @@ use anyhow::{Result, bail};
 use std::path::Path;
 use std::process::Command;
 
-/// What a branch may have left, the likeliest first.
+/// Branches that a branch may have left, the likeliest first.
 const ORIGINS: &[&str] = &["@{upstream}", "origin/HEAD", "main", "master"];
 
-/// What the changes since a commit reach; if none is named, since this branch left [the one it is of](ORIGINS).
+/// Steps and packages that the changes since a commit reach; if none is named, since this branch left [the one it is of](ORIGINS).
 pub(super) fn reached(base: Option<&str>) -> Result<Reached> {
     let (base, changes) = changes(&root(), base)?;
     Ok(Reached::by(&base, &changes, &workspace::packages()?))
@@ -52,7 +52,7 @@ fn changes(folder: &Path, base: Option<&str>) -> Result<(String, Vec<String>)> {
     Ok((base.chars().take(12).collect(), files))
 }
 
-/// What git answers, if it does.
+/// Answer of git, if there is one.
 fn git(folder: &Path, arguments: &[&str]) -> Option<String> {
     let output = Command::new("git").args(arguments).current_dir(folder).output().ok()?;
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())

@@ -51,10 +51,10 @@ const REASONS: &[(&str, &str)] = &[
     ("doc", "no Rust code has changed"),
 ];
 
-/// What changes reach.
+/// Steps and packages that changes reach.
 #[derive(Debug, Default)]
 pub(super) struct Reached {
-    /// How many files differ from which commit.
+    /// Number of files that differ, and the commit that they differ from.
     heading: String,
     steps: BTreeSet<&'static str>,
     /// Packages whose tests are reached.
@@ -66,7 +66,7 @@ pub(super) struct Reached {
 }
 
 impl Reached {
-    /// What these files reach, which differ from a commit.
+    /// The reach of these files, which differ from a commit.
     pub(super) fn by(base: &str, files: &[String], packages: &[Package]) -> Reached {
         let heading = format!("{} files differ from {base}", files.len());
         let members: Vec<&Package> = packages.iter().filter(|package| package.member).collect();
@@ -127,7 +127,7 @@ impl fmt::Display for Reached {
     }
 }
 
-/// What files reach, while they are added.
+/// The reach of files, while they are added.
 struct Reach<'a> {
     members: &'a [&'a Package],
     steps: BTreeSet<&'static str>,

@@ -1,4 +1,4 @@
-//! How long a step took.
+//! Time that a step took.
 
 use crate::process::cpu_time;
 use std::fmt;

@@ -42,7 +42,7 @@ pub(super) fn run(steps: &[&'static Step], context: Context) -> Result<(Vec<Repo
     Ok((reports, totals))
 }
 
-/// What has ended so far.
+/// Steps that have ended so far.
 #[derive(Default)]
 struct Done {
     reports: Vec<Report>,

@@ -32,7 +32,7 @@ pub(super) enum Lane {
     Documents,
 }
 
-/// What steps share.
+/// State that steps share.
 #[derive(Default)]
 pub(super) struct Context {
     /// A step may add to it.
@@ -154,7 +154,7 @@ fn tests(context: &mut Context) -> Result<()> {
     }
 }
 
-/// The same with more samples, rays, seeds and cases.
+/// The tests with more samples, rays, seeds and cases.
 fn long_suites(context: &mut Context) -> Result<()> {
     suites::run(suites_of(context, true), &mut context.totals)
 }

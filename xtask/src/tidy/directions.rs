@@ -44,7 +44,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("xtask", &[]),
 ];
 
-/// What the readers of scene files share stands on what scenes are made of.
+/// Code that the readers of scene files share stands on what scenes are made of.
 const UNDER_IMPORT: &[&str] = &["bilux-math", "bilux-pictures", "bilux-scene"];
 
 /// The readers of a format know those of no other.

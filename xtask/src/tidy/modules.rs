@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Enums that are tables: each variant holds the type of one file, which registers itself there.
 const CLOSED_SETS: &[&str] = &["Lobe", "Phase"];
 
-/// How many re-exports a name may pass through.
+/// Number of re-exports that a name may pass through.
 const MAX_REEXPORTS: usize = 16;
 
 /// One file of a crate's `src`, without its tests.

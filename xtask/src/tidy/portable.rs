@@ -1,10 +1,10 @@
-//! What goes into a wheel or a program compiles on Linux, macOS and Windows: the modules of one system alone are listed here, and
-//! their callers have another way for the others.
+//! Code that goes into a wheel or a program compiles on Linux, macOS and Windows: the modules of one system alone are listed
+//! here, and their callers have another way for the others.
 
 use super::repository::Repository;
 use super::violation::Violation;
 
-/// What only some systems have.
+/// Paths that only some systems have.
 const SYSTEMS: &[&str] = &["std::os::unix", "std::os::linux", "std::os::windows", "std::os::fd", "libc::"];
 
 /// The files of one system alone; their modules are compiled only there.

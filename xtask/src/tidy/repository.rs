@@ -37,7 +37,7 @@ impl TextFile {
         self.path.ends_with("/tests.rs") || self.path.split('/').any(|part| part == "tests")
     }
 
-    /// How many lines come before its tests.
+    /// Number of lines before the file's tests.
     pub(crate) fn lines_before_tests(&self) -> usize {
         let lines = || self.text.lines();
         lines().position(|line| line == "#[cfg(test)]").unwrap_or_else(|| lines().count())

@@ -67,7 +67,7 @@ impl Splitter<'_> {
     }
 }
 
-/// The same number of bytes, all spaces except for the line breaks.
+/// Spaces for as many bytes as the text has, except for its line breaks.
 fn blank(text: &str) -> String {
     text.bytes().map(|byte| if byte == b'\n' { '\n' } else { ' ' }).collect()
 }

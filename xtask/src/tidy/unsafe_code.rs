@@ -19,10 +19,10 @@ const ALLOWED: &[(&str, &str)] = &[
     ("crates/accel/src/bvh8/kernel/", "the wide tree's walk, a file for each level of instructions"),
 ];
 
-/// What names them for readers.
+/// Page that names these modules for readers.
 const ARCHITECTURE: &str = "ARCHITECTURE.md";
 
-/// How many lines above the word its justification may begin: attributes and longer reasons need room.
+/// Number of lines above the word within which its justification may begin: attributes and longer reasons need room.
 const REACH: usize = 12;
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {

@@ -1,4 +1,4 @@
-//! What rules find.
+//! Violations that rules find.
 
 use std::fmt;
 

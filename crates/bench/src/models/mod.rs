@@ -1,4 +1,4 @@
-//! What a newcomer gets: models as they come, rendered with default settings, in one second and with `--fast`, each by
+//! Pictures of a newcomer: models as they come, rendered with default settings, in one second and with `--fast`, each by
 //! a process of its own, and compared with converged pictures by perceptual metrics.
 
 mod blotches;
@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-/// What is measured, and for how long.
+/// Files to measure, and the time to spend.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// The program `bilux` itself.
@@ -29,7 +29,7 @@ pub struct Options {
 /// The default number of seconds for each half of a reference.
 pub const SECONDS: f64 = 8.0;
 
-/// How a picture is rendered, and the maximum mean FLIP of a good one.
+/// Arguments of a render, and the maximum mean FLIP of a good picture.
 struct Setting {
     name: &'static str,
     arguments: &'static [&'static str],

@@ -13,7 +13,7 @@ pub struct Batch {
     pub rays: Vec<Ray>,
 }
 
-/// What the rays of a batch found, ray by ray.
+/// Answers to the rays of a batch, ray by ray.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Answers {
     /// Closest hits; empty for an any-hit batch.

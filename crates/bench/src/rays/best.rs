@@ -21,7 +21,7 @@ pub struct Best {
 /// The fastest of several engines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Champion {
-    /// Its name and mode.
+    /// Name and mode of the engine.
     pub name: String,
     /// Millions of rays a second.
     pub mrays: f64,
@@ -56,7 +56,7 @@ pub(super) fn best(rows: &[Row]) -> Vec<Best> {
     cells.into_iter().filter_map(one).collect()
 }
 
-/// The same as a table; empty without Embree.
+/// Table of the best results; empty without Embree.
 pub(super) fn text(rows: &[Row]) -> String {
     let best = best(rows);
     if best.is_empty() {

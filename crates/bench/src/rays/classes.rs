@@ -70,7 +70,7 @@ fn pixel(camera: &dyn Camera, x: usize, y: usize, width: usize) -> Ray {
     Ray { t_min: 0.0, t_max: f32::INFINITY, ..Ray::new(ray.origin, direction.to_array()) }
 }
 
-/// Where rays hit; those that miss are left out.
+/// Points that rays hit; rays that miss are left out.
 fn arrivals(tree: &Bvh, mesh: &TriangleMesh, rays: impl Iterator<Item = Ray>) -> Vec<Point> {
     let arrive = |ray: Ray| {
         let hit = tree.closest_hit(&ray, &Query::default())?;

@@ -1,11 +1,11 @@
-//! What is measured, behind one trait whose calls take a whole batch, and how a call is timed.
+//! Engines to measure, behind one trait whose calls take a whole batch, and the timing of a call.
 
 use super::batch::{Answers, Batch};
 use bilux::accel::{Hit, Ray};
 use std::hint::black_box;
 use std::time::Instant;
 
-/// How rays are passed to an engine.
+/// Number of rays in a call of an engine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Mode {
     /// One per call.

@@ -1,4 +1,4 @@
-//! What `bench rays` is asked to do.
+//! Options of `bench rays`.
 
 use bilux::formats::ReadOptions;
 use std::path::PathBuf;
@@ -8,7 +8,7 @@ use std::path::PathBuf;
 pub struct Options {
     /// Scene files; if empty, our own scenes.
     pub scenes: Vec<PathBuf>,
-    /// How scene files are read.
+    /// Options for reading scene files.
     pub read: ReadOptions,
     /// Our structures; if empty, the fastest and `bvh`.
     pub accels: Vec<String>,
@@ -24,7 +24,7 @@ pub struct Options {
     pub mesh: Option<PathBuf>,
     /// See `mesh`.
     pub rays: Vec<PathBuf>,
-    /// Where the hits of the last file of rays are written.
+    /// File for the hits of the last file of rays.
     pub hits: Option<PathBuf>,
 }
 

@@ -36,7 +36,7 @@ fn bvh2(triangles: &[Triangle]) -> Bvh2 {
     build_bvh2_from_tris(triangles, BvhBuildParams::very_slow_build(), &mut Duration::default())
 }
 
-/// What obvhs's two trees have in common.
+/// Queries that obvhs's two trees have in common.
 trait ObvhsTree {
     fn closest(&self, ray: obvhs::ray::Ray, triangles: &[RtTriangle]) -> RayHit;
     fn any(&self, ray: obvhs::ray::Ray, triangles: &[RtTriangle]) -> bool;

@@ -1,4 +1,4 @@
-//! What is traced: our own scenes, scene files, or meshes and rays from files.
+//! Scenes to trace: our own, scene files, or meshes and rays from files.
 
 use super::batch::Batch;
 use super::options::Options;
@@ -17,7 +17,7 @@ pub(super) struct TestMesh {
     pub(super) mesh: Arc<TriangleMesh>,
 }
 
-/// Where a test mesh comes from.
+/// Source of a test mesh.
 pub(super) enum Source {
     Own { name: &'static str, generator: &'static str, parameters: &'static [(&'static str, i64)] },
     Scene(PathBuf),
@@ -39,7 +39,7 @@ const OWN: [OwnScene; 8] = [
     ("teapot100k", "teapots", &[("count", 1), ("tessellation", 40)]),
     ("teapots10m", "teapots", &[("count", 10), ("tessellation", 125)]),
 ];
-/// How many are traced unless others are named.
+/// Number of our own scenes that are traced unless others are named.
 const USUAL: usize = 4;
 
 /// The scenes that the options ask for. The name of one of our own scenes stands for it if there is no such file.

@@ -14,7 +14,7 @@ pub fn relmse(picture: &[Rgb], reference: &[Rgb]) -> f64 {
     errors.iter().sum::<f64>() / errors.len().max(1) as f64
 }
 
-/// The same without the worst 0.1% of the pixels, so that single fireflies do not dominate.
+/// The mean of [`relmse`] without the worst 0.1% of the pixels, so that single fireflies do not dominate.
 pub fn relmse_trimmed(picture: &[Rgb], reference: &[Rgb]) -> f64 {
     let mut errors = pixel_errors(picture, reference);
     errors.sort_by(f64::total_cmp);

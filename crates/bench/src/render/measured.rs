@@ -1,4 +1,4 @@
-//! What was measured: a row for each integrator, scene and budget.
+//! Results: a row for each integrator, scene and budget.
 
 use super::reference::Reference;
 use bilux::pictures::WriteOptions;
@@ -23,7 +23,7 @@ pub(super) struct Row {
     pub(super) peak_mb: Option<f64>,
     /// The first of the pictures.
     pub(super) picture: Vec<Rgb>,
-    /// What `auto` chose there, and why.
+    /// Choice of `auto`, with its reasons.
     pub(super) choice: Option<Choice>,
 }
 
@@ -32,7 +32,7 @@ pub(super) struct Measured {
     pub(super) scene: String,
     pub(super) summary: String,
     pub(super) reference: Reference,
-    /// How its pictures are displayed.
+    /// Display options of the scene's pictures.
     pub(super) shown: WriteOptions,
     pub(super) rows: Vec<Row>,
 }

@@ -1,4 +1,4 @@
-//! What `bench render` is asked to do.
+//! Options of `bench render`.
 
 use bilux::formats::ReadOptions;
 use std::path::PathBuf;
@@ -10,7 +10,7 @@ pub struct Options {
     pub scenes: Vec<String>,
     /// The user's own scene files. Their references are rendered first.
     pub files: Vec<PathBuf>,
-    /// How files are read.
+    /// Options for reading files.
     pub read: ReadOptions,
     /// The CPU seconds that each of the two integrators spends on the reference of a file.
     pub reference_seconds: f64,

@@ -1,4 +1,4 @@
-//! What `auto` predicted for each integrator compared with what was measured: times to the same error, relative to that
+//! Predictions of `auto` for each integrator compared with what was measured: times to the same error, relative to that
 //! of its choice.
 
 use super::measured::{Measured, Row};

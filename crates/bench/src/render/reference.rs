@@ -18,9 +18,9 @@ use std::path::PathBuf;
 pub struct Reference {
     /// Linear light, in rows.
     pub pixels: Vec<Rgb>,
-    /// Its own error, in the units of relMSE: errors close to it are meaningless.
+    /// Error of the reference itself, in the units of relMSE: errors close to it are meaningless.
     pub relmse: f64,
-    /// What it was made from.
+    /// Origin of the reference, in words.
     pub origin: String,
 }
 
@@ -50,7 +50,7 @@ impl Reference {
     }
 }
 
-/// How references are made.
+/// Options for making references.
 #[derive(Clone, Debug)]
 pub struct ReferenceOptions {
     /// The folder for the files.

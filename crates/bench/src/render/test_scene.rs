@@ -1,4 +1,4 @@
-//! What the integrators are measured on: built-in scenes, and the user's own files.
+//! Test scenes for the integrators: built-in scenes, and the user's own files.
 
 use super::options::Options;
 use super::reference::{Reference, ReferenceOptions, make_reference};

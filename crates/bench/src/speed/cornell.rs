@@ -24,7 +24,7 @@ const WHITE: Rgb = Rgb::new(0.725, 0.71, 0.68);
 const RED: Rgb = Rgb::new(0.63, 0.065, 0.05);
 const GREEN: Rgb = Rgb::new(0.14, 0.45, 0.091);
 
-/// Its converged picture, by a renderer that is not ours and seeds that are not measured.
+/// Converged picture of the box, by a renderer that is not ours and seeds that are not measured.
 ///
 /// # Errors
 /// If the file that was compiled in is broken.

@@ -24,7 +24,7 @@ const FIRST_SEED: u32 = 40_001;
 /// The error for which times are compared.
 const TARGET: f64 = 0.01;
 
-/// What the pictures of one side cost, and their errors.
+/// Times of one side's pictures, and to the target error.
 #[derive(Default)]
 struct Side {
     seconds: Vec<f64>,

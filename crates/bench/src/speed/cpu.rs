@@ -1,4 +1,4 @@
-//! What is measured on.
+//! The processor that is measured on.
 
 use bilux::accel::CpuLevel;
 use std::fs;

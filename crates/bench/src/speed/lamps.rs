@@ -1,4 +1,4 @@
-//! How much longer a picture takes that is lit by many lamps.
+//! Time of a picture lit by many lamps, relative to one lit by few.
 
 use super::measurement::{Context, Measurement};
 use super::row::{Goal, Row};

@@ -1,4 +1,4 @@
-//! What a vertex of the material with everything costs, compared with a diffuse one.
+//! Cost of a vertex of the material with everything, compared with a diffuse one.
 //!
 //! Two closed rooms, one inside the other, so that every path goes on to its full length: only the inner one lets light
 //! through, and the camera and the light are in it. Time is divided by the rays that were traced.
@@ -52,9 +52,9 @@ const NUMBERS: [(&str, f32); 13] = [
     ("thin_film_weight", 0.3),
     ("thin_film_thickness", 1.0),
 ];
-/// What most models have, and nothing else of the above.
+/// Parameters that most models have, and nothing else of the above.
 const USUAL: [&str; 4] = ["base_color", "base_metalness", "specular_roughness", "normal"];
-/// Those that let light through.
+/// Parameters that let light through.
 const TRANSMISSIVE: [&str; 2] = ["transmission_weight", "diffuse_transmission_weight"];
 
 fn run(context: &Context) -> Result<Vec<Row>, Error> {

@@ -7,14 +7,14 @@ use bilux::Error;
 
 /// One way of filling rows of the table.
 pub struct Measurement {
-    /// Its name for the user.
+    /// Name for the user.
     pub name: &'static str,
-    /// What it measures.
+    /// Summary of the rows that it fills.
     pub summary: &'static str,
     pub(super) run: fn(&Context) -> Result<Vec<Row>, Error>,
 }
 
-/// What a measurement is given.
+/// Inputs of a measurement.
 pub(super) struct Context<'a> {
     pub(super) options: &'a Options,
     pub(super) progress: ProgressFn<'a>,

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::Arc;
 
-/// What runs in Python.
+/// Script that runs in Python.
 const SCRIPT: &str = include_str!("render_by_mitsuba.py");
 
 /// A folder for files that the other side reads, removed at the end.
@@ -135,7 +135,7 @@ impl Mitsuba {
         })
     }
 
-    /// What the other side is, for the notes.
+    /// Description of the other side, for the notes.
     pub(super) fn name(&self) -> String {
         format!("the other side is Mitsuba {}, llvm_ad_rgb, path, independent sampler", self.version)
     }

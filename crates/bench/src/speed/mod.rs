@@ -1,4 +1,4 @@
-//! How fast Bilux is, and how small, in one table of goals: a row for each thing that a goal was set for, with the same
+//! Speed and size of Bilux, in one table of goals: a row for each thing that a goal was set for, with the same
 //! thing by another renderer where one can be asked.
 //!
 //! Both sides of a row are measured in the same run and take turns; medians are reported. Where the other renderer is

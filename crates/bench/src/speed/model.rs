@@ -32,7 +32,7 @@ const FIRST_SEED: u32 = 40_001;
 /// The least square of a mean that errors are relative to, as in `relmse`.
 const DARK: f64 = 1e-2;
 
-/// What both sides understand of a material: our name, Mitsuba's, the number of channels, and the default.
+/// Parameters of a material that both sides have: our name, Mitsuba's, the number of channels, and the default.
 const SHARED: [(&str, &str, usize, f32); 3] = [
     ("base_color", "base_color", 3, 0.8),
     ("base_metalness", "metallic", 1, 0.0),

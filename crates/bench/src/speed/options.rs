@@ -1,16 +1,16 @@
-//! What `bench speed` is asked to do.
+//! Options of `bench speed`.
 
 use bilux::formats::ReadOptions;
 use std::path::PathBuf;
 
-/// What is measured, and with what.
+/// Rows to measure, and the programs and the effort for them.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Names from [`MEASUREMENTS`](super::MEASUREMENTS); if empty, all of them.
     pub rows: Vec<String>,
     /// The model of the rows about models; they are skipped without one.
     pub model: Option<PathBuf>,
-    /// How the model is read.
+    /// Options for reading the model.
     pub read: ReadOptions,
     /// The Python that can import Mitsuba.
     pub python: PathBuf,

@@ -3,20 +3,20 @@
 use crate::table;
 use serde_json::{Value, json};
 
-/// What was measured, and the goal for it.
+/// A measured quantity, and the goal for it.
 #[derive(Clone, Debug)]
 pub(super) struct Row {
     pub(super) what: String,
     /// `None` if it could not be measured.
     pub(super) ours: Option<f64>,
-    /// What ours is compared with; `None` if there is nothing, or it could not be measured.
+    /// The number that ours is compared with; `None` if there is none, or it could not be measured.
     pub(super) peer: Option<f64>,
     pub(super) goal: Goal,
-    /// What the numbers leave out; may be empty.
+    /// Note on what the numbers leave out; may be empty.
     pub(super) note: String,
 }
 
-/// What is to be reached.
+/// Goal for a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Goal {
     /// By our side alone.

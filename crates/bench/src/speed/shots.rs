@@ -41,7 +41,7 @@ impl Shot {
 pub(super) struct UserPicture {
     /// Samples per pixel.
     pub(super) samples: u32,
-    /// Its width and height, as `WxH`.
+    /// Width and height of the picture, as `WxH`.
     pub(super) size: String,
 }
 
@@ -68,7 +68,7 @@ pub(super) fn as_a_user(
     })
 }
 
-/// How a picture is rendered.
+/// Settings of a picture to be rendered.
 #[derive(Clone, Copy)]
 pub(super) struct Plan {
     pub(super) integrator: &'static str,

@@ -1,4 +1,4 @@
-//! How much faster two threads are than one.
+//! Speedup of two threads over one.
 
 use super::cpu::cores;
 use super::measurement::{Context, Measurement};

@@ -1,4 +1,4 @@
-//! What the benchmarks measure, on scenes that take moments.
+//! Tests of the benchmarks' results, on scenes that take moments.
 
 mod build;
 mod rays;

@@ -129,7 +129,7 @@ pub(super) fn names_with_spaces<'d>(
 pub(super) struct Input<'d> {
     pub(super) semantic: &'d str,
     pub(super) source: Element<'d>,
-    /// Where its index is among those of a vertex.
+    /// Place of the input's index among the indices of a vertex.
     pub(super) offset: usize,
     pub(super) set: Option<u32>,
 }

@@ -16,7 +16,7 @@ pub(super) struct Element<'d> {
     xml: &'d Xml<'d>,
 }
 
-/// What words of the file may stand for.
+/// A type of number that words of the file may stand for.
 pub(super) trait Number: Copy {
     fn parse(word: &[u8]) -> Option<Self>;
 }
@@ -44,7 +44,7 @@ impl<'d> Element<'d> {
         Element { node: xml.root(), xml }
     }
 
-    /// What distinguishes it from all others.
+    /// Key that distinguishes the element from all others.
     pub(super) fn key(self) -> NodeId {
         self.node.id()
     }
@@ -57,7 +57,7 @@ impl<'d> Element<'d> {
         self.node.attribute(name)
     }
 
-    /// Its name, or else its id.
+    /// Name of the element, or else its id.
     pub(super) fn label(self) -> String {
         let name = self.attribute("name").filter(|name| !name.trim().is_empty());
         shortened(name.or_else(|| self.attribute("id")).unwrap_or_default())
@@ -84,12 +84,12 @@ impl<'d> Element<'d> {
         names.iter().try_fold(self, |element, name| element.child(name))
     }
 
-    /// It and all elements in it, in the order of the file.
+    /// The element and all elements in it, in the order of the file.
     pub(super) fn descendants(self) -> impl Iterator<Item = Element<'d>> {
         self.node.descendants().filter(Node::is_element).map(move |node| self.of(node))
     }
 
-    /// Its text without blanks around it.
+    /// Text of the element, without blanks around it.
     pub(super) fn text(self) -> &'d str {
         self.node.text().unwrap_or_default().trim()
     }

@@ -93,7 +93,7 @@ impl<'d> Graph<'d> {
     }
 }
 
-/// What nodes have from the one that they are in.
+/// Values that nodes take over from the one that they are in.
 #[derive(Clone, Copy)]
 struct Parent {
     world: DMat4,

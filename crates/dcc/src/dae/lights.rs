@@ -110,7 +110,7 @@ impl Lamp<'_, '_> {
             .with("irradiance", self.colour * irradiance as f32)
     }
 
-    /// Its intensity in W/sr. Light that does not become weaker with the square of the distance alone is as bright as stated
+    /// Intensity in W/sr. Light that does not become weaker with the square of the distance alone is as bright as stated
     /// in the middle of the scene.
     fn power(&self, middle: DVec3, sink: &mut Sink) -> Rgb {
         if self.is_in_watts() {

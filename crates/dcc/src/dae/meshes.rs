@@ -21,7 +21,7 @@ use std::sync::Arc;
 /// The meshes that have been read, and the materials that they are of.
 #[derive(Default)]
 pub(super) struct Meshes<'d> {
-    /// Those that nothing deforms.
+    /// Meshes that nothing deforms.
     made: HashMap<NodeId, Rc<Made<'d>>>,
     materials: Materials<'d>,
 }

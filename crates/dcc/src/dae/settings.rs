@@ -1,4 +1,4 @@
-//! What holds for the whole file: its axes, its unit, and the program that wrote it.
+//! Settings of the whole file: its axes, its unit, and the program that wrote it.
 
 use super::element::Element;
 use bilux_import::bytes::float::parse_f64;
@@ -6,7 +6,7 @@ use bilux_import::input::authors::program;
 use bilux_import::input::oddities::Oddities;
 use bilux_math::{DMat3, DMat4, DVec3};
 
-/// What the asset of a file says.
+/// Settings of a file, as its asset element states them.
 pub(super) struct Settings {
     /// The axes and the unit of what states none of its own.
     pub(super) frame: Frame,
@@ -32,10 +32,10 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// Where nothing is stated.
+    /// The frame where nothing is stated.
     const UNSTATED: Frame = Frame { axes: DMat3::IDENTITY, unit: 1.0 };
 
-    /// That of an element in this one: as its own asset says, and as here where it says nothing.
+    /// Frame of an element in this one: as its own asset says, and as here where it says nothing.
     pub(super) fn within(self, element: Element, oddities: &mut Oddities) -> Frame {
         let Some(asset) = element.child("asset") else { return self };
         let stated = asset.child("unit").and_then(|unit| unit.attribute("meter"));

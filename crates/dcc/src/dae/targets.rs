@@ -1,4 +1,4 @@
-//! What the targets of animations refer to: `id/sid/sid.member`, or `(i)(j)` in place of a member.
+//! Targets of animations: `id/sid/sid.member`, or `(i)(j)` in place of a member.
 
 use super::document::Document;
 use super::element::Element;
@@ -10,10 +10,10 @@ pub(super) struct Target<'d> {
     pub(super) first: Option<usize>,
 }
 
-/// How many elements are looked at to find one by its sid.
+/// Number of elements that are searched for one with a sid.
 const MAX_SEARCHED: usize = 4096;
 
-/// What a target refers to.
+/// The element and the number that a target names.
 pub(super) fn target<'d>(text: &str, document: &Document<'d>) -> Option<Target<'d>> {
     let (mut path, mut member) = (text.trim(), None);
     let last = path.rfind('/').map_or(0, |slash| slash + 1);

@@ -1,4 +1,4 @@
-//! What a node is, other than a mesh: the attribute that belongs to it, or before version 7 the node itself.
+//! Cameras and lights of nodes: the attribute that belongs to a node, or before version 7 the node itself.
 
 use super::document::{Index, Properties};
 use super::graph::{Graph, Placed};

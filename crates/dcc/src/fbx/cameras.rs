@@ -55,7 +55,7 @@ pub(super) fn camera(
     Some(CameraSpec { spec, keyframes: Vec::new() })
 }
 
-/// What a camera sees.
+/// Field of view of a camera.
 struct View {
     /// Width over height.
     aspect: f64,
@@ -63,7 +63,7 @@ struct View {
     half_height: f64,
 }
 
-/// How a camera states its field of view.
+/// Ways in which a camera states its field of view.
 const BOTH_ANGLES: i64 = 0;
 const HORIZONTAL_ANGLE: i64 = 1;
 const FOCAL_LENGTH: i64 = 3;

@@ -13,7 +13,7 @@ use bilux_math::{DVec3, Rgb};
 use bilux_scene::{Span, Spec};
 use std::f64::consts::PI;
 
-/// How light becomes weaker with the distance.
+/// Decay of light with the distance.
 const NONE: i64 = 0;
 const LINEAR: i64 = 1;
 const CUBIC: i64 = 3;
@@ -97,7 +97,7 @@ impl Lamp<'_> {
             .with("irradiance", self.colour * irradiance as f32)
     }
 
-    /// Its intensity in W/sr. Light that does not become weaker with the square of the distance is as bright as stated in
+    /// Intensity in W/sr. Light that does not become weaker with the square of the distance is as bright as stated in
     /// the middle of the scene.
     fn power(&self, middle: DVec3, sink: &mut Sink) -> Rgb {
         if self.is_in_watts {

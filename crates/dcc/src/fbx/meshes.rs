@@ -21,7 +21,7 @@ use std::sync::Arc;
 
 /// The meshes that have been read, and the materials that they are of.
 pub(super) struct Meshes<'d> {
-    /// Those that do not deform.
+    /// Parts of meshes that do not deform.
     parts: HashMap<Index, Arc<Vec<Part>>>,
     materials: Materials<'d>,
     /// The sets of texture coordinates that textures name.
@@ -98,7 +98,7 @@ impl<'d> Meshes<'d> {
         Ok(())
     }
 
-    /// What the materials of a mesh are chosen from.
+    /// The materials and textures among which those of a mesh are chosen.
     fn choice(&self, geometry: Index, model: Index, document: &Document<'d>) -> Choice<'d> {
         let second_set = second_set(document.object(geometry).node).and_then(|(_, name)| name);
         Choice {

@@ -12,7 +12,7 @@ impl RotationOrder {
     /// About x first, then y, then z.
     pub(super) const XYZ: RotationOrder = RotationOrder([0, 1, 2]);
 
-    /// That of a number in the file; others are as the first.
+    /// The order of a number in the file; unknown numbers are as the first.
     fn numbered(number: i64) -> RotationOrder {
         RotationOrder(match number {
             1 => [0, 2, 1],
@@ -24,7 +24,7 @@ impl RotationOrder {
         })
     }
 
-    /// That of a node.
+    /// The order of a node.
     pub(super) fn of(properties: &Properties) -> RotationOrder {
         RotationOrder::numbered(properties.integer("RotationOrder").unwrap_or(0))
     }
@@ -70,7 +70,7 @@ fn about(axis: usize, degrees: f64) -> DMat3 {
     DMat3::from_cols(columns[0], columns[1], columns[2])
 }
 
-/// How the scale of a parent is inherited.
+/// Inheritance of a parent's scale.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Inheritance {
     /// The scales of all are multiplied by axis, and come before their rotations.
@@ -130,7 +130,7 @@ pub(super) struct Inherited {
 }
 
 impl Inherited {
-    /// That of the scene, whose axes and unit are those of the file.
+    /// The values for the scene, whose axes and unit are those of the file.
     pub(super) fn root() -> Inherited {
         Inherited {
             matrix: DMat4::IDENTITY,
@@ -140,7 +140,7 @@ impl Inherited {
         }
     }
 
-    /// That of a child.
+    /// The values for a child.
     pub(super) fn child(&self, local: &Local) -> Inherited {
         let mut matrix = self.matrix * local.matrix;
         let (above, inherited_scale) = match local.inheritance {

@@ -18,7 +18,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What making a generated mesh takes, in sizes of that mesh.
+/// Memory that making a generated mesh takes, in sizes of that mesh.
 const MAKING: u64 = 3;
 
 /// Bytes of a mesh for each of its triangles, with the half of a vertex that it has.

@@ -86,7 +86,7 @@ impl Native<'_, '_> {
     }
 }
 
-/// What a table changes.
+/// The part of the scene that a table changes.
 fn target(table: &Table) -> Result<(Part, Which), FormatError> {
     let named: Vec<(Part, &Item)> =
         Part::ALL.into_iter().filter_map(|part| Some((part, table.find(part.name())?))).collect();

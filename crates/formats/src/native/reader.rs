@@ -1,4 +1,4 @@
-//! What all parts of a scene file share while it is read.
+//! State that all parts of a scene file share while it is read.
 
 use super::document::Item;
 use super::include::Part;

@@ -8,7 +8,7 @@ use bilux_scene::{Mesh, Reader};
 /// A row of [`SHAPES`].
 #[derive(Clone, Copy, Debug)]
 pub struct ShapeEntry {
-    /// Its name, summary, source and parameters.
+    /// Name, summary, source and parameters.
     pub entry: Entry,
     /// Builds the mesh from its parameters.
     pub build: fn(&Reader) -> Mesh,

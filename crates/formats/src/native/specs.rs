@@ -241,7 +241,7 @@ impl Native<'_, '_> {
     }
 }
 
-/// What the key `place` of a grid is.
+/// Value of a grid's key `place`, in words.
 const PLACE: &str =
     "12 numbers: the steps of a voxel along x, y and z in the object, and the corner of the first one";
 

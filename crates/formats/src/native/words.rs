@@ -1,4 +1,4 @@
-//! How TOML spells keys, numbers and texts.
+//! Spelling of keys, numbers and texts in TOML.
 
 /// True if a key needs no quotes.
 pub(super) fn is_bare(key: &str) -> bool {

@@ -5,7 +5,7 @@ use bilux_import::input::reading::Reading;
 use bilux_scene::Span;
 use std::path::{Path, PathBuf};
 
-/// Its name, at the top of the archive.
+/// Name of the manifest, at the top of the archive.
 pub(super) const NAME: &str = "manifest.xml";
 
 /// The path of the scene that the manifest of an archive names, or its name if it is not there; `None` without a manifest.

@@ -49,7 +49,7 @@ fn scene(text: &str) -> SceneBuilder {
     read_text("dae", text).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
-/// Where the corners of the first object are.
+/// Corners of the first object, in world space.
 fn corners(scene: &SceneBuilder) -> Vec<Vec3> {
     let object = &scene.objects[0];
     object.mesh.positions.iter().map(|p| object.motion.at(0.0).point(*p)).collect()

@@ -108,7 +108,7 @@ fn what_was_closed_stays_closed() {
     }
 }
 
-/// The same heights, as each format says them: half of the map, less a quarter.
+/// Each format states these heights in its own way: half of the map, less a quarter.
 #[test]
 fn maps_of_materials_mean_the_same_in_every_format() {
     let f = |u: f32, _: f32| [u; 3];

@@ -10,7 +10,7 @@ use bilux_scene::{Axis, SceneBuilder, UpHint};
 /// The corners of the tetrahedron in metres with y up: 3 to the right, 1 up, 2 to the back.
 const SIZE: DVec3 = DVec3::new(3.0, 1.0, 2.0);
 
-/// Its corners in units of a file, where the legs along x, up, and to the back are these vectors.
+/// Corners of the tetrahedron in units of a file, where the legs along x, up, and to the back are these vectors.
 fn corners(unit: f64, legs: [DVec3; 3]) -> [DVec3; 4] {
     let [x, up, back] = [0, 1, 2].map(|i| legs[i] * SIZE.to_array()[i] / unit);
     [DVec3::ZERO, x, up, back]
@@ -264,7 +264,7 @@ def SphereLight \"point\"\n{\n    bool treatAsPoint = 1\n    float inputs:intens
 def SphereLight \"ball\"\n{\n    float inputs:intensity = 5\n    float inputs:radius = 20\n    double3 xformOp:translate = (0, 60, 200)\n    uniform token[] xformOpOrder = [\"xformOp:translate\"]\n}\n
 def DistantLight \"sun\"\n{\n    float inputs:intensity = 3\n    float inputs:angle = 0\n}\n";
 
-/// What a camera and lamps mean in metres with y up, whatever a spec leaves to its defaults.
+/// Meaning of a camera and lamps in metres with y up, whatever a spec leaves to its defaults.
 #[test]
 fn cameras_and_lamps_keep_their_places_and_their_light() {
     let scene = read_text("usda", STAGE).unwrap();

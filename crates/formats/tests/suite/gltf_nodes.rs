@@ -244,7 +244,7 @@ fn uris_outside_the_folder_and_of_the_network_are_refused() {
     }
 }
 
-/// What is animated takes the place of what the node says, which may be that it is hidden. [KHR_animation_pointer]
+/// Animated values take the place of what the node says, which may be that it is hidden. [KHR_animation_pointer]
 #[test]
 fn a_node_that_is_hidden_at_rest_is_shown_where_its_animation_says_so() {
     let mut parts = Parts::default();

@@ -1,4 +1,4 @@
-//! What `bilux info` reports about invalid glTF: each rule on a file that violates only that rule.
+//! Reports of `bilux info` about invalid glTF: each rule on a file that violates only that rule.
 
 use crate::warnings;
 use bilux_formats::{ReadOptions, read_bytes};

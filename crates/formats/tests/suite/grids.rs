@@ -33,7 +33,7 @@ fn put_text(out: &mut Vec<u8>, text: &str) {
     put(out, text);
 }
 
-/// How the numbers of an OpenVDB file are packed.
+/// Packing of the numbers of an OpenVDB file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Pack {
     No,
@@ -768,7 +768,7 @@ fn skewed(p: DVec3) -> DVec3 {
     DVec3::from(SKEWED.map(|row| DVec3::from(row).dot(p))) + DVec3::from(SHIFT)
 }
 
-/// The same map in a file of NanoVDB that is not compressed: row after row. [NanoVDB.h, Map]
+/// The skewed map in a file of NanoVDB that is not compressed: row after row. [NanoVDB.h, Map]
 fn with_skewed_map(mut file: Vec<u8>) -> Vec<u8> {
     let map = 16 + 176 + 8 + 296;
     for (i, number) in SKEWED.as_flattened().iter().enumerate() {
@@ -782,7 +782,7 @@ fn with_skewed_map(mut file: Vec<u8>) -> Vec<u8> {
     file
 }
 
-/// That of OpenVDB multiplies rows of indices.
+/// The skewed map in OpenVDB, which multiplies rows of indices.
 fn affine() -> (&'static str, Vec<f64>) {
     let [a, b, c] = SKEWED;
     let columns = [0, 1, 2].map(|i| [a[i], b[i], c[i], 0.0]);

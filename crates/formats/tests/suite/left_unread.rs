@@ -1,4 +1,4 @@
-//! What files state beside the usual: columns without a name, deleted points, indices of 0, lamps that are meshes or mirrored.
+//! Unusual statements of files: columns without a name, deleted points, indices of 0, lamps that are meshes or mirrored.
 
 use crate::{read_text, warnings};
 use bilux_math::{Rgb, Vec2, Vec3};
@@ -83,7 +83,7 @@ fn las(format: u8, withheld: &[usize]) -> Vec<u8> {
     file
 }
 
-/// The same with compressed points: a record that says how, and the points after it. [LAS 1.4 R15, 2.5]
+/// A LAS file as `las` makes it, with compressed points: a record that says how, and the points after it. [LAS 1.4 R15, 2.5]
 fn laz(format: u8, withheld: &[usize]) -> Vec<u8> {
     let plain = las(format, withheld);
     let (mut file, points) = (plain[..375].to_vec(), &plain[375..]);
@@ -144,7 +144,7 @@ fn gltf(extensions: &str, base: &str) -> Spec {
     scene.materials[0].clone()
 }
 
-/// What a surface reflects at normal incidence: of a metal its colour, of a dielectric by its index. [OpenPBR 1.1]
+/// Reflectance of a surface at normal incidence: of a metal its colour, of a dielectric by its index. [OpenPBR 1.1]
 fn reflected(spec: &Spec) -> [f32; 3] {
     let number = |key: &str, unsaid: f32| spec.number(key).unwrap_or(unsaid);
     let metal = number("base_metalness", 0.0);

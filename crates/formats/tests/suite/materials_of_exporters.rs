@@ -30,7 +30,7 @@ fn value<'s>(spec: &'s Spec, key: &str) -> Option<&'s Value> {
     spec.parameters.find(key).map(|(value, _)| value)
 }
 
-/// What a material lets through: `opaque`, `clear N` with its opacity, or `glass`.
+/// Light that a material lets through: `opaque`, `clear N` with its opacity, or `glass`.
 fn passes(spec: &Spec) -> String {
     match (spec.kind.as_str(), value(spec, "opacity")) {
         ("dielectric", _) => "glass".to_owned(),

@@ -27,7 +27,7 @@ fn dressed(spec: Spec) -> SceneBuilder {
     scene
 }
 
-/// What a material is after it was written and read.
+/// A material after it was written and read.
 fn back_of(spec: Spec) -> Spec {
     let (back, text, said) = there(&dressed(spec));
     assert!(said.is_empty(), "{said:?}\n{text}");

@@ -18,7 +18,7 @@ fn scene(toml: &str) -> SceneBuilder {
     read_text("toml", toml).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The same for TOML text, with a plain material where none is named.
+/// Writes a scene from TOML text and reads it back, with a plain material where none is named.
 fn there(toml: &str) -> (Vec<String>, SceneBuilder) {
     let mut original = scene(toml);
     for spec in original.materials.iter_mut().filter(|spec| spec.kind == "phong") {
@@ -265,7 +265,7 @@ fn a_frame_wider_than_the_picture_stays_whole() {
     }
 }
 
-/// What pbrt cannot say of a picture that shines is said; of one that lies as pbrt puts it, nothing is.
+/// A warning says what pbrt cannot hold of a picture that shines; there is none for a picture that lies as pbrt puts it.
 #[test]
 fn pictures_that_shine_say_what_is_lost_of_their_place() {
     use bilux_scene::Texture;

@@ -614,7 +614,7 @@ fn files_without_a_name_are_known_by_their_first_statement() {
     }
 }
 
-/// What generators of skies print is read as what they are asked for.
+/// Output of generators of skies is read as what they are asked for.
 #[test]
 fn skies_that_generators_have_written_are_the_same() {
     let written = "void light solar 0 0 3 7.033e+06 7.033e+06 7.033e+06\nsolar source sun 0 0 4 0.491441 -0.160574 0.855980 0.5\n\

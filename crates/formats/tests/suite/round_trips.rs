@@ -135,7 +135,7 @@ fn specular_colours_come_back_from_ply() {
     assert_same_colours(&original.objects[0].mesh, &as_ply.objects[0].mesh);
 }
 
-/// What vertices can have, by the names that rows of the table of formats use.
+/// Attributes that vertices can have, by the names that rows of the table of formats use.
 const ATTRIBUTES: &[&str] = &["normals", "uv", "vertex-kd"];
 
 /// Two closed meshes whose vertices have one thing more than positions.

@@ -21,14 +21,14 @@ fn scene(text: &str) -> SceneBuilder {
     read_text("step", text).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The length of a unit, and what the scene measures in millimetres.
+/// Measures of a scene without warnings, in units of a millimetre.
 fn measured(name: &str) -> Measures {
     let scene = scene(&seed(name));
     assert_eq!((warnings(&scene), scene.unit), (String::new(), 1e-3), "{name}");
     measures(&scene)
 }
 
-/// The same within a hundredth: chords are shorter than arcs.
+/// Asserts equality within a hundredth: chords are shorter than arcs.
 #[track_caller]
 fn assert_near(here: f64, there: f64) {
     assert!((here / there - 1.0).abs() < 0.01, "{here}, not {there}");
@@ -58,7 +58,7 @@ fn solids_have_the_areas_and_volumes_that_formulas_give() {
     assert_near(measured("swept_and_splines.step").area, 4.0 * 14.0 * PI + 10.5 * PI);
 }
 
-/// How often each edge of a scene's triangles is used one way and not the other.
+/// Number of edges that a scene's triangles use more often one way than the other.
 fn open_edges(scene: &SceneBuilder) -> usize {
     let mut count = std::collections::HashMap::new();
     for object in &scene.objects {
@@ -350,7 +350,7 @@ fn a_torus_has_its_area_however_it_is_divided() {
     }
 }
 
-/// What is invisible is every item of a list, not its first alone: of four solids the second and the fourth are left.
+/// Every item of a list of invisible ones is hidden, not its first alone: of four solids the second and the fourth are left.
 #[test]
 fn all_items_of_a_list_of_invisible_ones_are_hidden() {
     let text = seed("tessellated.step");

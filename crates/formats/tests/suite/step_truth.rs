@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
-/// What a scene measures, in millimetres.
+/// Measures of a scene, in millimetres.
 pub(crate) struct Measures {
     pub(crate) area: f64,
     pub(crate) volume: f64,
@@ -50,7 +50,8 @@ pub(crate) fn measures(scene: &SceneBuilder) -> Measures {
     found
 }
 
-/// What differs by more than a hundredth: the area, the volume, the bounds, and the areas of colours.
+/// Differences in the area, the volume and the areas of colours, of more than a hundredth, and in the bounds, of more than half a
+/// hundredth of their diagonal.
 fn differences(ours: &Measures, truth: &[f64], colours: &str) -> Vec<String> {
     let mut all = Vec::new();
     let [area, volume] = [truth[1], truth[2]];

@@ -406,7 +406,7 @@ fn a_file_in_utf_16_is_read() {
     assert_eq!(scene.objects.len(), 1, "recognised by its first bytes, too");
 }
 
-/// What slicers read though the specification forbids it: drawn, and said. A tetrahedron of unit legs each time.
+/// Faults that the specification forbids but slicers read: drawn, and said. A tetrahedron of unit legs each time.
 #[test]
 fn what_slicers_read_is_drawn_with_a_warning() {
     let whole = model(&object(1, ""), &items(&[1]));

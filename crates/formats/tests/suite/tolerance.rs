@@ -1,5 +1,5 @@
-//! What all readers of text and of binary files put up with: byte order marks, UTF-16, padding, decimal commas, wrong
-//! counts, and coordinates far from zero.
+//! Irregularities that all readers of text and of binary files put up with: byte order marks, UTF-16, padding, decimal
+//! commas, wrong counts, and coordinates far from zero.
 
 use crate::{read_text, refusal, warnings};
 use bilux_formats::{ReadOptions, read};

@@ -4,7 +4,7 @@ use crate::warnings;
 use bilux_formats::{ReadOptions, read};
 use bilux_scene::SceneBuilder;
 
-/// What is there without clips.
+/// The model without clips.
 const MODEL: &str =
     "def \"m\" { def Sphere \"s\" { double radius = 1 } def Sphere \"t\" { double radius = 3 } }";
 /// Two clips, of which the second is the first times ten.

@@ -14,7 +14,7 @@ fn copies(said: &str, prototype: &str) -> SceneBuilder {
     read_text("usda", text).unwrap()
 }
 
-/// Where each object is along x, with the colour and the opacity of its material.
+/// Place of each object along x, with the colour and the opacity of its material.
 fn worn(scene: &SceneBuilder) -> Vec<(f32, [f32; 3], f32)> {
     let one = |object: &Object| {
         let material = &scene.materials[object.material];

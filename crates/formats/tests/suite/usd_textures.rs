@@ -8,7 +8,7 @@ use bilux_pictures::{BitDepth, ColourSpace, Picture, WriteOptions, write_bytes};
 use bilux_scene::texture::UvPair;
 use bilux_scene::{SceneBuilder, Texture, Value};
 
-/// What a picture of the tests is.
+/// Properties of a picture of the tests.
 #[derive(Clone, Copy)]
 struct Of<'a> {
     channels: &'a [&'a str],

@@ -37,7 +37,7 @@ fn ours(scene: &SceneBuilder) -> BTreeMap<String, Meshes> {
     all
 }
 
-/// What differs, if something does.
+/// The first difference, if there is one.
 fn difference(truth: &BTreeMap<String, Meshes>, ours: &BTreeMap<String, Meshes>) -> Option<String> {
     for (name, there) in truth.iter().filter(|(_, meshes)| meshes.triangles > 0) {
         let Some(here) = ours.get(name) else { return Some(format!("{name} is missing")) };

@@ -16,7 +16,7 @@ pub(crate) fn files_below(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
     found
 }
 
-/// What a script beside this file prints when a Python runs it with the names of files, one per line.
+/// Output of a script beside this file, run by a Python with the names of files, one per line.
 pub(crate) fn said(script: &str, files: &[PathBuf], python: &OsStr) -> String {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/suite").join(script);
     let mut child = Command::new(python)

@@ -11,7 +11,7 @@ use std::path::Path;
 
 /// A wrong file.
 struct Case {
-    /// What is wrong, in a few words.
+    /// The fault, in a few words.
     name: &'static str,
     files: &'static [(&'static str, &'static [u8])],
     /// The file to read: as a picture, if its name is that of one.

@@ -14,7 +14,7 @@ use filters::Filter;
 
 pub(super) const NAME: &str = "EXT_meshopt_compression";
 
-/// How elements are packed.
+/// Packing of elements.
 #[derive(Clone, Copy, PartialEq)]
 enum Mode {
     Attributes,

@@ -30,7 +30,7 @@ const NUMBERS: &[(&str, &str, &str, &str, usize)] = &[
     ),
 ];
 
-/// The same for colours.
+/// Parameters of `principled` that belong to an extension and are colours: extension, key and texture key.
 const COLOURS: &[(&str, &str, &str, &str)] = &[
     ("specular_color", "KHR_materials_specular", "specularColorFactor", "specularColorTexture"),
     (
@@ -63,7 +63,7 @@ const ELSEWHERE: &[&str] = &[
     "thin_film_ior",
 ];
 
-/// Those of them that may be textures.
+/// Parameters written in another way that may be textures.
 const TEXTURED: [&str; 6] = [
     "base_color",
     "base_metalness",

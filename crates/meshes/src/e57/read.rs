@@ -150,7 +150,7 @@ fn in_range(part: f32, unsaid: f32) -> f32 {
     if part.is_finite() { part.clamp(0.0, 1.0) } else { unsaid }
 }
 
-/// What is wrong, in plain words.
+/// Reason of an error, in plain words.
 fn reason(error: &Error) -> &'static str {
     match error {
         Error::NotImplemented { .. } => {

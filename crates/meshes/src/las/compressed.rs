@@ -17,10 +17,10 @@ const NUMBER: u16 = 22204;
 /// The compressor of the first versions: points in one stream, without chunks.
 const ONE_STREAM: u16 = 1;
 
-/// Where the record has the number of points in a chunk.
+/// Bytes of the record with the number of points in a chunk.
 const CHUNK_SIZE: std::ops::Range<usize> = 12..16;
 
-/// What is kept of a point: three coordinates, the intensity, two bytes of returns, flags and classes, and, from here on, the colour.
+/// Place of the colour in a kept point, after three coordinates, the intensity, and two bytes of returns, flags and classes.
 const COLOUR: usize = 16;
 
 /// The points of a file as records of their own, with the header that describes these.
@@ -90,7 +90,7 @@ fn description(bytes: &[u8]) -> Option<&[u8]> {
     None
 }
 
-/// The same record with a size of chunks. The first versions (LASzip 1.2) have no chunks and no size, for which the decompressor
+/// The record with a size of chunks. The first versions (LASzip 1.2) have no chunks and no size, for which the decompressor
 /// would look for a table of chunks of different sizes.
 fn in_chunks(record: &[u8]) -> Cow<'_, [u8]> {
     if record.len() < CHUNK_SIZE.end || u16_at(record, 0) != ONE_STREAM {

@@ -1,4 +1,4 @@
-//! What one block of lines of an OBJ file says.
+//! One block of lines of an OBJ file.
 
 use bilux_import::FormatError;
 use bilux_import::bytes::text::TextPosition;
@@ -43,7 +43,7 @@ pub(super) struct Backward {
     pub(super) corner: Option<u32>,
     /// The part: position, uv or normal.
     pub(super) part: u8,
-    /// Its index relative to the first element of the block.
+    /// Index relative to the first element of the block.
     pub(super) index: i64,
     /// The offset of the corner in the block.
     pub(super) offset: usize,

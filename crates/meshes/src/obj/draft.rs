@@ -10,7 +10,7 @@ use std::collections::HashMap;
 pub(super) struct Draft {
     pub(super) name: String,
     pub(super) span: Span,
-    /// Where it begins in the file.
+    /// Offset in the file at which the material begins.
     pub(super) start: usize,
     pub(super) colours: HashMap<&'static str, (Rgb, usize)>,
     pub(super) numbers: HashMap<&'static str, (f32, usize)>,
@@ -39,7 +39,7 @@ impl Draft {
         self.numbers.contains_key(key) || self.colours.contains_key(key)
     }
 
-    /// Where the line of a number or a colour begins; where the material does, if there is none.
+    /// Offset at which the line of a number or a colour begins; that of the material, if there is none.
     pub(super) fn offset(&self, key: &str) -> usize {
         let number = self.numbers.get(key).map(|(_, at)| *at);
         number.or(self.colours.get(key).map(|(_, at)| *at)).unwrap_or(self.start)
@@ -80,7 +80,7 @@ pub(super) struct Map {
     pub(super) is_clamped: bool,
     /// The bump multiplier.
     pub(super) bump: f32,
-    /// What is added to values, and their factor.
+    /// An addition to values, and a factor on them.
     pub(super) range: [f32; 2],
     /// The selected channel.
     pub(super) channel: Option<Channel>,

@@ -1,4 +1,4 @@
-//! What programs mean by the specular keywords of MTL, told by the first line of a library. `Ks` and `Ns` stay what they are
+//! Meanings of the specular keywords of MTL by program, told by the first line of a library. `Ks` and `Ns` stay what they are
 //! in those of all others: 3ds Max, Maya, Cinema 4D, Rhino, SketchUp and Wings 3D write Phong's.
 
 use bilux_import::bytes::text::Cursor;
@@ -6,7 +6,7 @@ use bilux_import::bytes::text::Cursor;
 /// The habit of a program: `Ks` is the specular level, of which 0.5 is a reflection of 4%, and `Ns` says how rough the surface is.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Habit {
-    /// How the first line begins.
+    /// Beginning of the first line.
     first_line: &'static str,
     /// `Ns` of a roughness r is so much times (1 - r)².
     pub(super) smooth: f32,
@@ -20,7 +20,7 @@ static HABITS: &[Habit] = &[
     Habit { first_line: "# Blender ", smooth: 1000.0 },
 ];
 
-/// That of the program that wrote a library; `None` for all others.
+/// Habit of the program that wrote a library; `None` for all others.
 pub(super) fn habit_of(library: &[u8]) -> Option<Habit> {
     let mut cursor = Cursor::new(library);
     let line = loop {

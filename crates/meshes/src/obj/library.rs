@@ -12,6 +12,6 @@ pub(super) struct Library<'a, 'o, 'r> {
     pub(super) cursor: Cursor<'a>,
     pub(super) places: Places<'a>,
     pub(super) oddities: Oddities,
-    /// What its program means by the specular keywords, where that is not Phong's.
+    /// Meaning of the specular keywords to the program that wrote the library, where that is not Phong's.
     pub(super) habit: Option<Habit>,
 }

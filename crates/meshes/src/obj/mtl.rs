@@ -84,7 +84,7 @@ const ALIASES: [(&str, &str); 5] = [
 ];
 /// Ambient light follows kd in Bilux, and sharpness applies to reflection maps.
 const WITHOUT_USE: [&str; 3] = ["Ka", "map_Ka", "sharpness"];
-/// What one would see if Bilux had it.
+/// Keywords that would show if Bilux had them.
 const NOT_SHOWN: [&str; 5] = ["refl", "map_refl", "decal", "map_Ns", "map_Tr"];
 
 impl Library<'_, '_, '_> {

@@ -310,7 +310,7 @@ impl Obj<'_, '_, '_> {
     }
 }
 
-/// The same error, moved down by a number of lines.
+/// An error moved down by a number of lines.
 fn moved_down(error: FormatError, lines: u32) -> FormatError {
     match error {
         FormatError::Malformed { message, mut at } => {

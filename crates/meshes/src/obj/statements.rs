@@ -41,7 +41,7 @@ pub(super) fn bad_corner(word: &[u8]) -> String {
     )
 }
 
-/// What happens to elements that cannot be read.
+/// Consequences for elements that cannot be read.
 const VERTEX_LEFT_OUT: &str = ": this vertex is left out, together with the faces that use it";
 const ATTRIBUTE_LEFT_OUT: &str = ": this normal or texture coordinate is set to 0";
 const FACE_LEFT_OUT: &str = ": this face is left out";

@@ -1,4 +1,4 @@
-//! What lets light through. Exporters write `d`, `Tr`, `Tf` and `illum` in ways that contradict each other, so that a
+//! Opacity and glass. Exporters write `d`, `Tr`, `Tf` and `illum` in ways that contradict each other, so that a
 //! library is interpreted as a whole, as `docs/formats/obj.md` describes.
 
 use super::draft::Draft;

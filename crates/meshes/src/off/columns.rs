@@ -1,4 +1,4 @@
-//! What both directions know of OFF.
+//! Parts of OFF that the reader and the writer share.
 
 /// The comment that keeps faces without normals flat when Bilux reads its own files.
 pub(super) const FLAT_COMMENT: &[u8] = b"shading flat";

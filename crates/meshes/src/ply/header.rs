@@ -41,7 +41,7 @@ impl Scalar {
         })
     }
 
-    /// Its size in a binary body, in bytes.
+    /// Size in a binary body, in bytes.
     pub(super) fn size(self) -> usize {
         match self {
             Scalar::I8 | Scalar::U8 => 1,
@@ -51,7 +51,7 @@ impl Scalar {
         }
     }
 
-    /// How colours of this type are stored.
+    /// Stored form of colours of this type.
     pub(super) fn stored(self) -> Stored {
         match self {
             Scalar::I8 | Scalar::U8 => Stored::Bytes,

@@ -1,4 +1,4 @@
-//! What the readers of all elements of a PLY file share.
+//! State that the readers of all elements of a PLY file share.
 
 use super::body::Body;
 use super::header::{Element, Property};
@@ -25,7 +25,7 @@ pub(super) struct Ply<'a, 'o, 'r> {
     pub(super) edges: Vec<[u32; 2]>,
     /// The opacity and the width of each vertex that is a splat.
     pub(super) splats: Option<Splats>,
-    /// How colours of faces are stored, if there are any.
+    /// Stored form of the colours of faces, if there are any.
     pub(super) face_colours: Option<Stored>,
     /// The number of each face's texture.
     pub(super) face_textures: Vec<u32>,
@@ -40,7 +40,7 @@ pub(super) struct Ply<'a, 'o, 'r> {
     pub(super) oddities: Oddities,
 }
 
-/// What a splat is to a ball, by vertex.
+/// Attributes of splats that balls do not have, by vertex.
 #[derive(Default)]
 pub(super) struct Splats {
     pub(super) opacities: Vec<f32>,

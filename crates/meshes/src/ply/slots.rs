@@ -25,7 +25,7 @@ pub(super) const MEANINGS: [&[&str]; 14] = [
 pub(super) struct Slots {
     /// The meaning of each property.
     pub(super) meaning: Vec<Option<usize>>,
-    /// How diffuse and specular colours are stored.
+    /// Stored forms of diffuse and specular colours.
     pub(super) stored: [Stored; 2],
     pub(super) normals: bool,
     pub(super) uvs: bool,
@@ -68,7 +68,7 @@ impl Slots {
 pub(super) struct FaceSlots {
     /// The properties that are red, green and blue.
     pub(super) colour: Option<[usize; 3]>,
-    /// How these are stored.
+    /// Stored form of the colour.
     pub(super) stored: Option<Stored>,
     /// The property that is the number of the texture.
     pub(super) texture: Option<usize>,

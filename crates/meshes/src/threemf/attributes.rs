@@ -60,7 +60,7 @@ pub(super) fn integer(text: &str) -> Option<u32> {
     digits(text.trim_ascii().as_bytes())
 }
 
-/// The same without blanks around it.
+/// A number that is not negative, without blanks around it.
 #[inline]
 pub(super) fn digits(digits: &[u8]) -> Option<u32> {
     if digits.is_empty() || digits.len() > 10 {

@@ -8,7 +8,7 @@ use bilux_math::Rgb;
 use bilux_scene::{Spec, Texture, Value};
 use std::sync::Arc;
 
-/// What has been painted so far.
+/// A layer or the blend of several: one colour or a picture.
 pub(super) enum Ink {
     Flat(Rgb),
     Picture(Arc<Texture>),
@@ -25,7 +25,7 @@ pub(super) fn mixture(parts: &[Colour], values: &[f32]) -> Colour {
 }
 
 impl Layers {
-    /// How a layer covers those below. On a material, one that multiplies hides it: nobody knows its colour.
+    /// Blend of a layer with those below. On a material, one that multiplies hides it: nobody knows its colour.
     fn method(&self, model: &Model, layer: usize) -> Option<Method> {
         let method = *self.methods.get(layer.checked_sub(1)?)?;
         let hides = layer == 1 && method == Method::Multiply && model.groups[self.groups[0]].is_material();
@@ -117,7 +117,7 @@ fn formula(spec: Spec, parts: Vec<Arc<Texture>>) -> Result<Ink, FormatError> {
 }
 
 impl Ink {
-    /// Its value as a parameter; pictures are indices into `parts`.
+    /// The ink as a parameter's value; pictures are indices into `parts`.
     fn into_value(self, parts: &mut Vec<Arc<Texture>>) -> Value {
         match self {
             Ink::Flat(colour) => colour.into(),

@@ -76,7 +76,7 @@ fn parts(reading: &mut Reading, package: &Package, oddities: &mut Oddities) -> R
     Ok(model)
 }
 
-/// Where an object is placed, and the extruder that prints it.
+/// Placement of an object, and the extruder that prints it.
 #[derive(Clone, Copy)]
 struct Place {
     transform: DMat4,
@@ -92,7 +92,7 @@ struct Builder<'a, 'o> {
     meshes: Vec<Option<Vec<Piece>>>,
     looks: Looks,
     has_filaments: bool,
-    /// What a slicer says of objects of the main part.
+    /// Settings of a slicer for objects of the main part.
     settings: HashMap<u32, ObjectSettings>,
     sink: Sink,
 }

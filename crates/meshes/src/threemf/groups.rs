@@ -34,13 +34,13 @@ pub(super) enum GroupKind {
 pub(super) struct Layers {
     /// The groups of the layers.
     pub(super) groups: Vec<usize>,
-    /// How each layer but the first covers those below.
+    /// Blend of each layer but the first with those below.
     pub(super) methods: Vec<Method>,
     /// For each entry, the index of each layer.
     pub(super) indices: Vec<u32>,
 }
 
-/// How a layer covers those below.
+/// Blend of a layer with those below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Method {
     /// As its alpha says.
@@ -64,13 +64,13 @@ pub(super) struct Picture {
     pub(super) at: Span,
 }
 
-/// How materials look, each as the entry of a group with the same index.
+/// Appearances of materials, each as the entry of a group with the same index.
 pub(super) enum Display {
     Each(Vec<Appearance>),
     Textured(TexturedAppearance),
 }
 
-/// How a material looks.
+/// Appearance of a material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Appearance {
     Metallic {
@@ -89,7 +89,7 @@ pub(super) enum Appearance {
     },
 }
 
-/// How a textured material looks, by pictures.
+/// Appearance of a textured material, by pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum TexturedAppearance {
     Metallic { metalness: usize, roughness: usize, factors: [f32; 2], base: Rgb },

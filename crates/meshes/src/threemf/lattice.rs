@@ -6,7 +6,7 @@ use super::part::PartReader;
 use super::xml::{Element, Level};
 use bilux_import::FormatError;
 
-/// What holds for all beams of a lattice.
+/// Attributes that hold for all beams of a lattice.
 #[derive(Clone, Copy)]
 pub(super) struct LatticeAttributes {
     radius: f32,

@@ -1,4 +1,4 @@
-//! How triangles look: materials, made from properties once each.
+//! Looks of triangles: materials, made from properties once each.
 
 use super::blend::Ink;
 use super::colour::Colour;
@@ -17,12 +17,12 @@ use bilux_scene::{Spec, Texture, Value};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// What triangles have in common that share a material.
+/// Look of triangles that share a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Look {
     /// No property.
     Plain,
-    /// What is printed with the filament of an extruder, from 1 on; 0 stands for that of the part.
+    /// Filament of an extruder, from 1 on; 0 stands for that of the part.
     Filament(u32),
     /// An entry of a group, the same all over a triangle.
     Solid { group: usize, index: u32 },

@@ -173,7 +173,7 @@ impl Triangle<'_> {
         self.group.is_some() || self.properties[0].is_some()
     }
 
-    /// Its group: its own, which was found last, or that of the object.
+    /// Group of the triangle: its own, which was found last, or that of the object.
     fn group_of(&self, last: Option<(u32, u32)>, of_object: Option<Property>) -> Option<u32> {
         match self.group {
             Some(id) => last.filter(|(known, _)| *known == id).map(|(_, group)| group),
@@ -181,7 +181,7 @@ impl Triangle<'_> {
         }
     }
 
-    /// Its properties, if nothing is to be said of them and their group is known: `Some(None)` if it has none.
+    /// Properties of the triangle, if they need no warning and their group is known: `Some(None)` if it has none.
     fn known_properties(
         &self,
         last: Option<(u32, u32)>,

@@ -10,7 +10,7 @@ pub(super) struct MeshData {
     pub(super) triangles: Vec<[u32; 3]>,
     /// The properties of each triangle; empty if none has its own.
     pub(super) properties: Vec<TriangleProperties>,
-    /// What a slicer has painted on triangles, each with its index.
+    /// Paint of a slicer on triangles, each with its index.
     pub(super) paint: Vec<(u32, Box<str>)>,
     pub(super) lattice: Option<Lattice>,
 }

@@ -1,4 +1,4 @@
-//! What the parts of a package describe, as plain data.
+//! Contents of a package's parts, as plain data.
 
 use super::groups::{Display, Group, Picture};
 use super::mesh_data::MeshData;
@@ -18,7 +18,7 @@ pub(super) struct Model {
     pub(super) groups: Vec<Group>,
     pub(super) pictures: Vec<Picture>,
     pub(super) displays: Vec<Display>,
-    /// What the numbers of each part stand for.
+    /// Resources by the numbers of each part.
     pub(super) resources: HashMap<(usize, u32), Resource>,
     /// The members that parts lie in.
     pub(super) parts: Vec<String>,
@@ -26,14 +26,14 @@ pub(super) struct Model {
     pub(super) metadata: HashSet<String>,
 }
 
-/// What a number of a part stands for, as an index into the lists of the model.
+/// Resource that has a number in a part, as an index into the lists of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Resource {
     Object(usize),
     Group(usize),
     Picture(usize),
     Display(usize),
-    /// What is not shown.
+    /// A resource that is not shown.
     Other,
 }
 
@@ -44,7 +44,7 @@ pub(super) struct Reference {
     pub(super) id: u32,
 }
 
-/// What is printed: an object at a place.
+/// An object to be printed, at a place.
 pub(super) struct Item {
     pub(super) object: Reference,
     pub(super) transform: DMat4,
@@ -62,7 +62,7 @@ pub(super) struct Object {
     pub(super) at: Span,
 }
 
-/// What an object is made of.
+/// Content of an object.
 pub(super) enum Content {
     Mesh(Box<MeshData>),
     Components(Vec<Component>),
@@ -82,18 +82,18 @@ pub(super) struct Property {
     pub(super) index: u32,
 }
 
-/// What an object is for.
+/// Purpose of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Role {
     Printed,
     Support,
-    /// It changes how others are printed.
+    /// A volume that changes how others are printed.
     Modifier,
     Other,
 }
 
 impl Model {
-    /// What a number of a part stands for.
+    /// Resource that has a number in a part.
     pub(super) fn find(&self, reference: Reference) -> Option<Resource> {
         self.resources.get(&(reference.part, reference.id)).copied()
     }

@@ -124,7 +124,7 @@ impl PartReader<'_, '_> {
     }
 }
 
-/// What an object is for, by its type.
+/// Purpose of an object, by its type.
 fn role(element: &Element) -> Result<Role, FormatError> {
     Ok(match element.get("type") {
         None | Some("model" | "surface") => Role::Printed,

@@ -17,7 +17,7 @@ const ENCRYPTED: &str = "http://schemas.openxmlformats.org/package/2006/relation
 const MODEL_TYPE: &str = "application/vnd.ms-package.3dmanufacturing-3dmodel+xml";
 const TYPES: &str = "[Content_Types].xml";
 const RELATIONSHIPS: &str = "_rels/.rels";
-/// Where the model usually is.
+/// Usual place of the model.
 const USUAL: &str = "3D/3dmodel.model";
 
 /// The first and last bytes that tell a package from other zip files.
@@ -82,7 +82,7 @@ impl Package {
         found
     }
 
-    /// What messages call a part.
+    /// Name of a part in messages.
     pub(super) fn named(&self, part: &str) -> Arc<str> {
         format!("{}/{}", self.name, part.trim_start_matches('/')).into()
     }
@@ -93,7 +93,7 @@ impl Package {
         Ok(stream)
     }
 
-    /// Where a member is, for [`Reading::load`].
+    /// Path of a member, for [`Reading::load`].
     pub(super) fn path(&self, member: &str) -> PathBuf {
         self.root.join(member)
     }

@@ -17,7 +17,7 @@ pub(super) struct PartReader<'a, 'o> {
     pub(super) xml: Xml,
     /// The number of the part.
     pub(super) part: usize,
-    /// What messages call it.
+    /// Name of the part in messages.
     pub(super) file: Arc<str>,
 }
 

@@ -19,7 +19,7 @@ pub(super) type Picture = (Arc<Texture>, Option<Arc<Texture>>);
 /// Pictures by their index; `None` for one that cannot be read.
 #[derive(Default)]
 pub(super) struct Pictures {
-    /// Where their files are in the archive.
+    /// Paths of the pictures' files in the archive.
     files: Vec<Option<PathBuf>>,
     images: HashMap<(usize, bool), Option<Arc<Image>>>,
     textures: HashMap<usize, Picture>,

@@ -31,7 +31,7 @@ pub(super) struct Whole<'a> {
     pub(super) property: Option<Property>,
     /// True if what has no property is printed with a filament whose colour is known.
     pub(super) has_filaments: bool,
-    /// What a slicer says of parts of the mesh.
+    /// Settings of a slicer for parts of the mesh.
     pub(super) settings: Option<&'a ObjectSettings>,
 }
 
@@ -171,7 +171,7 @@ fn by_normal(data: &mut MeshData, normals: &CornerNormals) -> Vec<Vec3> {
     turned
 }
 
-/// The same value for each of some vertices, if there is one.
+/// A list with one value for all of some vertices; empty if there is none.
 fn vec_of<T: Copy>(value: Option<T>, count: usize) -> Vec<T> {
     value.map_or_else(Vec::new, |value| vec![value; count])
 }
@@ -320,7 +320,7 @@ impl<'m> Welder<'m> {
     }
 }
 
-/// What the vertices of a look have.
+/// Attributes of a vertex of a look.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Paint {
     pub(super) colour: Option<Rgb>,
@@ -328,7 +328,7 @@ pub(super) struct Paint {
 }
 
 impl Look {
-    /// What a vertex with a property has.
+    /// Attributes of a vertex with a property.
     pub(super) fn paint(self, model: &Model, property: u32) -> Paint {
         let colour = |colour: Rgb| Paint { colour: Some(colour), uv: None };
         let uv_of = |group: usize, index: u32| match &model.groups[group].kind {

@@ -260,7 +260,7 @@ impl PartReader<'_, '_> {
     }
 }
 
-/// How a material looks, of an element of display properties.
+/// Appearance of a material, from an element of display properties.
 fn appearance(element: &Element) -> Result<Option<Appearance>, FormatError> {
     let part = |name, default: f32| element.number(name).map(|x| x.unwrap_or(default).clamp(0.0, 1.0));
     let triple = |name: &str| -> Result<[f32; 3], FormatError> {
@@ -291,7 +291,7 @@ fn appearance(element: &Element) -> Result<Option<Appearance>, FormatError> {
     })
 }
 
-/// How the layers cover each other.
+/// Blend of each layer but the first with those below.
 fn methods(element: &Element, layers: usize) -> Result<Vec<Method>, FormatError> {
     let mut methods = Vec::new();
     for word in element.get("blendmethods").unwrap_or_default().split_ascii_whitespace() {

@@ -14,7 +14,7 @@ impl<'x> Element<'x> {
         integer(text).map(Some).ok_or_else(|| self.wrong(name, text, "a whole number from 0 on"))
     }
 
-    /// The same of an attribute that has to be there.
+    /// A number that counts from 0, of an attribute that has to be there.
     pub(super) fn need_index(&self, name: &str) -> Result<u32, FormatError> {
         self.need(name)?;
         self.index(name).map(Option::unwrap_or_default)

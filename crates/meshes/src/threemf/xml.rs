@@ -27,7 +27,7 @@ pub(super) struct Xml {
     current: Current,
 }
 
-/// What the buffer does not say of the element in it.
+/// State of an element that its bytes in the buffer do not give.
 #[derive(Clone, Copy, Default)]
 struct Current {
     is_empty: bool,
@@ -38,9 +38,9 @@ struct Current {
 /// An element that has just been opened.
 pub(super) struct Element<'x> {
     pub(super) namespace: Namespace,
-    /// Its name without a prefix.
+    /// Name of the element without a prefix.
     pub(super) name: &'x str,
-    /// What it contains.
+    /// Level of the element's contents.
     pub(super) inside: Level,
     /// The text between its name and its end.
     raw: &'x str,

@@ -95,16 +95,16 @@ pub(super) fn looks_like_points(bytes: &[u8]) -> bool {
     lines > 1
 }
 
-/// What a comma is between numbers.
+/// Meaning of a comma between numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Comma {
     Separates,
-    /// It is the decimal point of some languages: 1,5 is one and a half.
+    /// The decimal point of some languages: 1,5 is one and a half.
     IsPoint,
 }
 
 impl Comma {
-    /// What the commas of a line are; `None` if it has none.
+    /// Meaning of the commas of a line; `None` if it has none.
     ///
     /// They are decimal where blanks or semicolons make words of at most one comma each, with digits on both sides,
     /// three or more in all.
@@ -118,7 +118,7 @@ impl Comma {
         Some(if is_point { Comma::IsPoint } else { Comma::Separates })
     }
 
-    /// That of the first line that has any.
+    /// Meaning of the commas of the first line that has any.
     pub(super) fn of_text(text: &[u8]) -> Comma {
         if !text.contains(&b',') {
             return Comma::Separates;

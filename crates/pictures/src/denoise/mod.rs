@@ -23,13 +23,13 @@ pub static DENOISERS: &[DenoiserEntry] = &[oidn::ENTRY, builtin::ENTRY];
 
 /// A chosen denoiser, with its expected time and advice.
 pub struct DenoiserChoice {
-    /// Its name in [`DENOISERS`].
+    /// Name in [`DENOISERS`].
     pub name: &'static str,
     /// The denoiser.
     pub denoiser: Box<dyn Denoiser>,
     /// Approximate run time.
     pub time: Duration,
-    /// How to get a better denoiser, if there is one.
+    /// Advice on getting a better denoiser, if there is one.
     pub advice: Option<String>,
 }
 

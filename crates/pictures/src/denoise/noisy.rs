@@ -56,7 +56,7 @@ pub struct Noisy {
 /// A part of the picture.
 #[derive(Clone, Debug)]
 pub struct Layer {
-    /// Its light.
+    /// Light of the layer.
     pub colour: Vec<Rgb>,
     /// The variance of each pixel, as a single estimate.
     pub variance: Option<Vec<Rgb>>,
@@ -118,8 +118,8 @@ impl Noisy {
         Ok(noisy.separated())
     }
 
-    /// The same where the first layer is still the whole picture, and nothing has been checked: takes the other layers out of the
-    /// first, and makes every value finite. Pixels that are not finite become black, without affecting anything else.
+    /// Takes the other layers out of the first, which is still the whole picture, and makes every value finite; none has been
+    /// checked before. Pixels that are not finite become black, without affecting anything else.
     pub fn separated(mut self) -> Noisy {
         if let [whole, parts @ ..] = &mut *self.layers {
             for part in parts {

@@ -1,4 +1,4 @@
-//! What a denoiser is, and what it is asked for.
+//! Denoisers, and the task that one is given.
 
 use super::noisy::Source;
 use crate::PictureError;
@@ -21,7 +21,7 @@ pub struct DenoiserEntry {
 
 /// A denoiser that is ready to run.
 pub trait Denoiser: Send + Sync {
-    /// Its name and location, for the user.
+    /// Name and location of the denoiser, for the user.
     fn describe(&self) -> String;
 
     /// The denoised picture, row by row. The result is the same for any number of threads.

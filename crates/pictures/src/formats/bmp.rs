@@ -44,7 +44,7 @@ struct Header {
     pixels: usize,
 }
 
-/// How pixels are packed.
+/// Packing of pixels.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Packing {
     /// Indices of `depth` bits each.
@@ -143,7 +143,7 @@ impl Header {
     }
 }
 
-/// How the pixels are packed, and the bits of each channel.
+/// Packing of the pixels, with the bits of each channel.
 fn packing(bytes: &[u8], compression: u32, depth: u16) -> Result<Packing, PictureError> {
     let masks = |bits: [u32; 4]| {
         let [r, g, b, a] = bits.map(Mask::new);

@@ -41,7 +41,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
 /// No renderer writes this many, and each of them costs time whatever its size.
 const MAX_CHANNELS: usize = 4096;
 
-/// What becomes the picture.
+/// Part of the file that becomes the picture.
 #[derive(Clone, Copy, PartialEq)]
 enum Wanted {
     /// The display window: outside a part's data window it is zero.

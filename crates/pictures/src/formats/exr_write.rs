@@ -31,7 +31,7 @@ enum Samples<'a> {
     Integers(&'a [u32]),
 }
 
-/// What a file says before its samples.
+/// Contents of a file before its samples.
 struct Layout<'a> {
     size: [usize; 2],
     crop: Option<Crop>,

@@ -4,9 +4,9 @@
 /// One format that is not read.
 #[derive(Clone, Copy, Debug)]
 pub struct ForeignFormat {
-    /// What a file of it is, such as `a GIF picture`.
+    /// Kind of a file in the format, such as `a GIF picture`.
     pub what: &'static str,
-    /// What to do with it.
+    /// Advice on using such a file.
     pub advice: &'static str,
     /// Whether it holds a picture.
     pub is_picture: bool,

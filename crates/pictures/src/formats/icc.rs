@@ -6,7 +6,7 @@ use super::primaries::{self, Matrix, REC709};
 use crate::ColourSpace;
 use bilux_math::transcendental::ln_f64;
 
-/// What samples are by a profile; `None` if it has no curve of red or of grey, or is damaged.
+/// Meaning of samples by a profile; `None` if it has no curve of red or of grey, or is damaged.
 pub(super) fn meaning(profile: &[u8]) -> Option<Meaning> {
     let curve = |name: &[u8; 4]| Curve::of(tag(profile, *name)?);
     let first = curve(b"rTRC").or_else(|| curve(b"kTRC"))?;
@@ -17,7 +17,7 @@ pub(super) fn meaning(profile: &[u8]) -> Option<Meaning> {
     Some(Meaning::Wide { curves: Box::new([first, green, blue]), matrix })
 }
 
-/// What of a profile `bytes` says, sRGB without one or with one that says nothing.
+/// Meaning of samples by a profile; sRGB without a profile, or with one that states none.
 pub(super) fn meaning_or_srgb(profile: Option<&[u8]>) -> Meaning {
     profile.and_then(meaning).unwrap_or(Meaning::Plain(ColourSpace::Srgb))
 }
@@ -26,8 +26,8 @@ pub(super) fn meaning_or_srgb(profile: Option<&[u8]>) -> Meaning {
 /// of profiles of sRGB do not agree on their third digits.
 const SAME: f64 = 0.02;
 
-/// What a curve is whose value for half is this: straight, that of sRGB and powers near it, or a power. No two curves in use
-/// meet there.
+/// Colour space of a curve whose value for half is this: straight, that of sRGB and powers near it, or a power. No two curves
+/// in use meet there.
 fn of_middle(light: f64) -> ColourSpace {
     // Half of the sRGB curve is .2140, and half to the power of 2.2 is .2176.
     match light {

@@ -80,7 +80,7 @@ fn options() -> DecoderOptions {
     DecoderOptions::default().set_max_width(usize::from(u16::MAX)).set_max_height(usize::from(u16::MAX))
 }
 
-/// What a file without an end marker lacks: the rows that would be others if other bytes followed.
+/// Loss of a file without an end marker, in words: the rows that would be others if other bytes followed.
 ///
 /// # Errors
 /// If it lacks all of its pixels.
@@ -127,7 +127,7 @@ fn loss(bytes: &[u8], space: ColorSpace, height: usize) -> Result<String, Pictur
     ))
 }
 
-/// How many bytes are tried in place of missing ones: enough for a difference in the first block.
+/// Number of bytes that are tried in place of missing ones: enough for a difference in the first block.
 const CONTINUED: usize = 64;
 
 /// Baseline JPEG, which every program reads. Chroma has full resolution from a quality of 90 on, and half below.

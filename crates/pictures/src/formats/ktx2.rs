@@ -33,20 +33,20 @@ const MAGIC: &[u8] = b"\xabKTX 20\xbb\r\n\x1a\n";
 /// Basis Universal or plain pixels, an unpacked level, and our own four planes.
 const BYTES_PER_PIXEL: u64 = 4 + 4 + 4 * 4;
 
-/// What is known before anything is unpacked.
+/// Facts of a file that are known before anything is unpacked.
 struct Header<'a> {
     width: usize,
     height: usize,
     is_srgb: bool,
     is_premultiplied: bool,
     pixels: Pixels<'a>,
-    /// Where the first column and row are, if the file says so: `r` or `l`, and `d` or `u`.
+    /// Directions of columns and rows, if the file states them: `r` or `l`, and `d` or `u`.
     orientation: Option<&'a [u8]>,
     /// The channels of the file that red, green, blue and alpha are, if it says so.
     swizzle: Option<&'a [u8]>,
 }
 
-/// How pixels are stored in the file.
+/// Storage of pixels in the file.
 enum Pixels<'a> {
     /// One to four bytes per pixel.
     Plain(&'a [u8]),

@@ -1,10 +1,10 @@
-//! What a file says its samples are: by a curve alone, or by a curve for each channel and primaries of its own.
+//! Meaning of a file's samples: by a curve alone, or by a curve for each channel and primaries of its own.
 
 use super::curve::Curve;
 use super::primaries::Matrix;
 use crate::{ColourSpace, Picture};
 
-/// What the samples of colours mean.
+/// Meaning of the samples of colours.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Meaning {
     /// The primaries of Rec. 709, by a curve that a picture can have.

@@ -105,8 +105,8 @@ pub fn read_with(path: impl AsRef<Path>, limits: &Limits) -> Result<Picture, Pic
     read_bytes(&bytes, extension, limits).map_err(|error| error.in_file(path))
 }
 
-/// The same, but of a picture that is a part of a larger one only that part, with its place as [`Picture::crop`]. Otherwise it
-/// comes as the larger picture, which is black around it.
+/// Reads a picture file as [`read_with`] does, but of a part of a larger picture only that part, with its place as
+/// [`Picture::crop`]. From `read_with` it comes as the larger picture, which is black around it.
 pub fn read_crop(path: impl AsRef<Path>, limits: &Limits) -> Result<Picture, PictureError> {
     let path = path.as_ref();
     let bytes = disk::read_within(path, limits).map_err(|error| error.in_file(path))?;
@@ -114,7 +114,7 @@ pub fn read_crop(path: impl AsRef<Path>, limits: &Limits) -> Result<Picture, Pic
     read_crop_bytes(&bytes, extension, limits).map_err(|error| error.in_file(path))
 }
 
-/// The same from memory, as [`read_bytes`].
+/// Reads a picture from memory as [`read_crop`] reads a file; `hint` is as for [`read_bytes`].
 pub fn read_crop_bytes(bytes: &[u8], hint: Option<&str>, limits: &Limits) -> Result<Picture, PictureError> {
     match row_of(bytes, hint)? {
         PictureFormatEntry { read_crop: Some(read_crop), .. } => read_crop(bytes, limits),
@@ -128,8 +128,8 @@ pub fn read_bytes(bytes: &[u8], hint: Option<&str>, limits: &Limits) -> Result<P
     (row_of(bytes, hint)?.read)(bytes, limits)
 }
 
-/// The same, whatever the file says of its colours: for numbers that are no colours, and for formats that say themselves what
-/// the colours of their textures are.
+/// Reads a picture from memory as [`read_bytes`] does, whatever the file says of its colours: for numbers that are no colours, and
+/// for formats that say themselves what the colours of their textures are.
 pub fn read_stored_bytes(bytes: &[u8], hint: Option<&str>, limits: &Limits) -> Result<Picture, PictureError> {
     let row = row_of(bytes, hint)?;
     (row.read_stored.unwrap_or(row.read))(bytes, limits)
@@ -144,7 +144,7 @@ pub fn read_rgba8(bytes: &[u8], hint: Option<&str>, limits: &Limits) -> Result<O
     Ok(read_interleaved_bytes(bytes, hint, limits)?.and_then(|stored| stored.rgba8()))
 }
 
-/// The same, with as many bytes per pixel as the file has, for another file.
+/// Decodes a picture as [`read_rgba8`] does, with as many bytes per pixel as the file has, for another file.
 ///
 /// # Errors
 /// As [`read_bytes`].
@@ -156,7 +156,7 @@ pub fn read_interleaved_bytes(
     row_of(bytes, hint)?.read_interleaved.map_or(Ok(None), |read| read(bytes, limits))
 }
 
-/// The same from a file.
+/// Decodes a picture file as [`read_interleaved_bytes`] decodes bytes.
 ///
 /// # Errors
 /// As [`read_with`].
@@ -190,7 +190,7 @@ pub fn write(path: impl AsRef<Path>, picture: &Picture, options: &WriteOptions) 
     write_source(path, Source::Planes(picture), options)
 }
 
-/// The same of any source. From bytes come the same files as from the planes that they stand for.
+/// Writes a picture file as `write` does, from any source. Bytes give the same files as the planes that they stand for.
 ///
 /// # Errors
 /// If the picture does not fit into the format, or the file cannot be written.
@@ -210,7 +210,7 @@ pub fn write_bytes(format: &str, picture: &Picture, options: &WriteOptions) -> R
     write_source_bytes(format, Source::Planes(picture), options)
 }
 
-/// The same of any source.
+/// The bytes of a picture file as [`write_bytes`] makes them, from any source.
 ///
 /// # Errors
 /// If the format cannot be written, or the picture does not fit into it.

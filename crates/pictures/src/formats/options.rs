@@ -1,4 +1,4 @@
-//! How pictures are written.
+//! Options for writing pictures.
 
 use crate::tonemap::{TONEMAPS, ToneMapEntry};
 use crate::{Picture, PictureError};

@@ -1,4 +1,4 @@
-//! How a picture is turned or mirrored before it is shown: the orientation of TIFF, which Exif takes over. [Exif]
+//! Orientation of a picture, which is turned or mirrored before it is shown: that of TIFF, which Exif takes over. [Exif]
 
 use super::rgba8::Interleaved;
 use crate::limits::reserved;

@@ -144,7 +144,7 @@ fn read_stored(bytes: &[u8], limits: &Limits) -> Result<(Picture, Meaning), Pict
     Ok((orientation(reader.info()).apply_to_planes(FORMAT, picture)?, meaning))
 }
 
-/// How the picture is turned, by its `eXIf` chunk.
+/// Orientation of the picture, by its `eXIf` chunk.
 fn orientation(info: &Info) -> Orientation {
     info.exif_metadata.as_ref().map_or(Orientation::of(1), |data| Orientation::of_exif(data))
 }
@@ -153,7 +153,7 @@ fn orientation(info: &Info) -> Orientation {
 const GAMMA_22: u8 = 4;
 const GAMMA_28: u8 = 5;
 const LINEAR: u8 = 8;
-/// Those that it cannot have.
+/// Transfer characteristics that a picture cannot have here.
 const PQ: u8 = 16;
 const HLG: u8 = 18;
 /// Primaries of Rec. 709, and unspecified ones. [ITU-T H.273, table 2]
@@ -201,7 +201,7 @@ fn by_gamma(info: &Info) -> ColourSpace {
     }
 }
 
-/// What a `cICP` chunk says and the colours do not show.
+/// Fault of a picture whose colours do not show what its `cICP` chunk says.
 fn not_heeded(info: &Info) -> Option<String> {
     let codes = info.coding_independent_code_points?;
     let curve = match codes.transfer_function {

@@ -15,7 +15,7 @@ pub struct Rgba8 {
     pub height: usize,
     /// In rows from the top.
     pub texels: Vec<[u8; 4]>,
-    /// What is wrong with the file, though it could be read.
+    /// Faults of the file, though it could be read.
     pub warnings: Vec<String>,
 }
 
@@ -28,7 +28,7 @@ pub struct Interleaved {
     pub(super) samples: Vec<u8>,
     /// Texts that are stored with the picture.
     pub metadata: BTreeMap<String, String>,
-    /// What is wrong with the file, though it could be read.
+    /// Faults of the file, though it could be read.
     pub warnings: Vec<String>,
 }
 
@@ -63,7 +63,7 @@ impl Interleaved {
         }
     }
 
-    /// The same as planes.
+    /// The picture as planes.
     pub(super) fn picture(&self, format: &'static str) -> Result<Picture, PictureError> {
         let mut picture = self.rows(format, 0..self.height)?;
         picture.warnings.clone_from(&self.warnings);
@@ -87,7 +87,7 @@ impl Interleaved {
         Ok(picture)
     }
 
-    /// The same as four bytes a pixel.
+    /// The picture as four bytes a pixel.
     pub(super) fn rgba8(&self) -> Option<Rgba8> {
         let samples = &self.samples[..];
         let texels = match self.channels() {

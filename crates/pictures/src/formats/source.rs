@@ -1,4 +1,4 @@
-//! Where writers get their pictures from: planes, or the bytes of another file. Files for a display are made a strip of rows
+//! Sources of pictures for writers: planes, or the bytes of another file. Files for a display are made a strip of rows
 //! at a time, so that what is made on the way is never as large as the picture.
 
 use super::options::{BitDepth, WriteOptions, require_colour};
@@ -72,8 +72,8 @@ impl<'a> Source<'a> {
         self.shown(format, options, true)
     }
 
-    /// The same for a format without alpha: transparent pixels are composited over white, unless the options have another
-    /// colour.
+    /// The main picture as `for_display` gives it, for a format without alpha: transparent pixels are composited over white,
+    /// unless the options have another colour.
     pub(super) fn opaque(
         self,
         format: &'static str,

@@ -172,7 +172,7 @@ const NO_ALPHA: u8 = 0;
 const IGNORED: u8 = 1;
 const PREMULTIPLIED: u8 = 4;
 
-/// What the fourth channel is, where the file has an extension area, which its last 26 bytes point to. [TGA 2.0, fields 10 and 28]
+/// Type of the fourth channel, where the file has an extension area, which its last 26 bytes point to. [TGA 2.0, fields 10 and 28]
 fn attributes_type(bytes: &[u8]) -> Option<u8> {
     let footer = bytes.last_chunk::<26>().filter(|footer| footer[8..].starts_with(b"TRUEVISION-XFILE."))?;
     let start = u32::from_le_bytes([footer[0], footer[1], footer[2], footer[3]]) as usize;

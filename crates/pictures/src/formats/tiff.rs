@@ -69,7 +69,7 @@ struct Decoded {
     in_planes: bool,
     /// The corner in which the first pixel is, from 1 to 8.
     orientation: u16,
-    /// What the samples mean, unless they are floats.
+    /// Meaning of the samples, unless they are floats.
     meaning: Meaning,
 }
 

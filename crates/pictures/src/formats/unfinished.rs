@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// Those of this process. Whoever creates a file, or puts one in its place, holds the lock meanwhile: so none appears after
-/// [`remove_unfinished`].
+/// Unfinished files of this process. Whoever creates a file, or puts one in its place, holds the lock meanwhile: so none
+/// appears after [`remove_unfinished`].
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {

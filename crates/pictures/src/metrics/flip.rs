@@ -166,7 +166,7 @@ fn redistributed(difference: f64, most: f64) -> f64 {
     }
 }
 
-/// How strongly each pixel resembles an edge, and a point. [Andersson 2020, section 4.2]
+/// Likeness of each pixel to an edge, and to a point. [Andersson 2020, section 4.2]
 struct Features {
     edges: Vec<f64>,
     points: Vec<f64>,

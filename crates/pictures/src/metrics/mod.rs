@@ -1,4 +1,4 @@
-//! How far a picture is from its reference. To add a metric, add a file with its `ENTRY`, and a line in the table.
+//! Distance of a picture from its reference. To add a metric, add a file with its `ENTRY`, and a line in the table.
 //!
 //! `rmse`, `relmse` and `max` compare light: linear Rec. 709 with premultiplied alpha. `psnr`, `ssim` and `flip`
 //! compare what is visible: encoded for a display, after exposure and tone map.
@@ -44,7 +44,7 @@ pub struct Pair {
     pub height: usize,
     /// Linear Rec. 709 with premultiplied alpha: the picture, then the reference.
     pub light: [Vec<Rgb>; 2],
-    /// The same for a display: sRGB-encoded, each channel 0..=1.
+    /// Both for a display: sRGB-encoded, each channel 0..=1.
     pub shown: [Vec<Rgb>; 2],
     /// Their alphas; 1 where a picture has none.
     pub alpha: [Vec<f32>; 2],

@@ -20,7 +20,7 @@ pub(super) const ENTRY: MetricEntry = MetricEntry {
 
 /// Radius of the window.
 const RADIUS: usize = 5;
-/// Its standard deviation in pixels.
+/// Standard deviation of the window, in pixels.
 const DEVIATION: f64 = 1.5;
 /// Stabilisers for quotients of very small numbers. [Wang 2004, eq. 13]
 const STABILISERS: [f64; 2] = [0.01 * 0.01, 0.03 * 0.03];

@@ -51,7 +51,7 @@ pub struct Sensor {
     pub dark_nonuniformity: f64,
     /// Standard deviation of the pixels' own responses (PRNU), as a fraction: the same in every picture.
     pub response_nonuniformity: f64,
-    /// How many digital numbers an electron makes; 0 for as many as let the full well reach the largest number.
+    /// Digital numbers per electron; 0 for as many as let the full well reach the largest number.
     pub gain: f64,
     /// Saturation-based ISO speed, which sets the gain; 0 if `gain` does.
     pub iso: f64,
@@ -65,13 +65,13 @@ pub struct Sensor {
     pub seed: u64,
 }
 
-/// What a sensor read: digital numbers.
+/// Output of a sensor: digital numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
     /// Digital numbers: a plane `Y` if each pixel has one filter or none, otherwise `R`, `G` and `B`. Where the picture is a part of a larger
     /// one, so is this.
     pub raw: Picture,
-    /// How many pixels have the largest number.
+    /// Number of samples with the largest number.
     pub saturated: u64,
 }
 
@@ -244,7 +244,7 @@ const BRIGHTEST: f64 = 1e12;
 /// The first word of what is a pixel's own.
 const FIXED: u64 = 0x5e45_0001;
 
-/// Where a picture begins in the one that it is a part of.
+/// The pixel at which a picture begins in the one that it is a part of.
 fn corner(picture: &Picture) -> [u64; 2] {
     picture.crop.map_or([0; 2], |crop| [crop.x as u64, crop.y as u64])
 }

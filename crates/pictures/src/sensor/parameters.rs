@@ -1,4 +1,4 @@
-//! What can be said of a sensor, on the command line and in Python.
+//! Parameters of a sensor, on the command line and in Python.
 
 use super::Pattern;
 use bilux_math::registry::{Entry, Parameter, ParameterKind, choice, integer};

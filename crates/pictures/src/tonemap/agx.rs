@@ -23,7 +23,7 @@ const INSET: [[f64; 3]; 3] = [
     [0.042_328_242_261_012_3, 0.878_468_636_469_772, 0.079_166_127_460_543_4],
     [0.042_375_654_905_705_1, 0.078_433_6, 0.879_142_973_793_104],
 ];
-/// The same with rows that sum to 1, so that grey stays grey.
+/// `INSET` with rows that sum to 1, so that grey stays grey.
 const TO_INSET: [[f64; 3]; 3] = [even(INSET[0]), even(INSET[1]), even(INSET[2])];
 const FROM_INSET: [[f64; 3]; 3] = inverse(TO_INSET);
 

@@ -18,9 +18,9 @@ pub(super) const ENTRY: ToneMapEntry = ToneMapEntry {
 
 /// The fraction that glossy surfaces reflect at normal incidence, which the curve subtracts.
 const F90: f32 = 0.04;
-/// Where compression begins, after that subtraction.
+/// Light at which compression begins, after that subtraction.
 const START: f32 = 0.8 - F90;
-/// How fast highlights desaturate.
+/// Rate at which highlights desaturate.
 const DESATURATION: f32 = 0.15;
 
 fn neutral(colour: Rgb) -> Rgb {

@@ -58,7 +58,7 @@ fn corners(picture: &Picture) -> String {
     [(2, 2), (right, 2), (2, bottom), (right, bottom)].map(letter).iter().collect()
 }
 
-/// Where the corners come to lie follows from the standard's table, which says where row 0 and column 0 are.
+/// Places of the corners follow from the standard's table, which says where row 0 and column 0 are.
 #[test]
 fn all_eight_orientations_are_applied() {
     let sixteen = WriteOptions { bit_depth: bilux_pictures::BitDepth::Sixteen, ..WriteOptions::default() };
@@ -280,7 +280,7 @@ fn hdr_pictures_are_turned_as_their_resolution_strings_say() {
     }
 }
 
-/// The same colour in Rec. 2020: the file states its primaries, whose luminance has other weights (ITU-R BT.2020: 0.2627,
+/// The file states the primaries of Rec. 2020, whose luminance has other weights (ITU-R BT.2020: 0.2627,
 /// 0.6780, 0.0593), and a grey stays grey.
 #[test]
 fn an_exr_of_luminance_and_chroma_has_the_colours_of_its_primaries() {

@@ -1,4 +1,4 @@
-//! What is written over files that exist: their links and their permissions.
+//! Pictures that are written over files that exist: the links and the permissions that stay.
 #![cfg(unix)]
 
 use bilux_math::Rgb;

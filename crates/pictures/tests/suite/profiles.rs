@@ -163,7 +163,7 @@ fn colours_of_other_primaries_are_converted_in_every_format() {
     }
 }
 
-/// What sRGB cannot show has no negative light, and white stays white.
+/// Colours that sRGB cannot show have no negative light, and white stays white.
 #[test]
 fn white_stays_white_and_no_light_is_negative() {
     for (name, profile, _) in profiles() {

@@ -115,7 +115,7 @@ fn a_full_well_and_the_largest_number_end_the_curve() {
     assert_eq!(reading.saturated, (SIDE * SIDE) as u64);
 }
 
-/// How far a sample is from Poisson numbers of this mean, by its first three moments, in standard deviations.
+/// Distance of a sample from Poisson numbers of this mean, by its first three moments, in standard deviations.
 fn far_from_poisson(numbers: &[f64], mean: f64) -> f64 {
     let [first, second, third] = moments(numbers);
     let count = numbers.len() as f64;

@@ -1,4 +1,4 @@
-//! What files state about their samples: curves, primaries, alpha, and which way up they are.
+//! Statements of files about their samples: curves, primaries, alpha, and which way up they are.
 
 use bilux_math::Rgb;
 use bilux_pictures::{
@@ -24,7 +24,7 @@ fn png(chunks: &[(&[u8], &[u8])]) -> Vec<u8> {
     png_of([128.0; 3], chunks)
 }
 
-/// The same of a pixel of these samples, of 255.
+/// A PNG of one pixel of these samples, of 255, without the chunk `sRGB`, and with others.
 fn png_of(samples: [f32; 3], chunks: &[(&[u8], &[u8])]) -> Vec<u8> {
     let mut picture = Picture::new(1, 1).unwrap();
     for (name, sample) in ["R", "G", "B"].into_iter().zip(samples) {
@@ -169,7 +169,7 @@ fn corrections_of_a_radiance_picture_are_divided_by() {
     near(light(read(&hdr(header, [128, 64, 32, 129]), "hdr")), [0.25, 0.5, 0.125]);
 }
 
-/// What begins with a blank is about the pictures that this one was made from. [Radiance, file formats]
+/// Lines that begin with a blank are about the pictures that this one was made from. [Radiance, file formats]
 #[test]
 fn headers_of_inputs_of_a_radiance_picture_do_not_count() {
     let header = "EXPOSURE=2\na.hdr:\n\tEXPOSURE=4\n\tFORMAT=none\nEXPOSURE= 2.0\n";

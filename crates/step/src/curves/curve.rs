@@ -1,4 +1,4 @@
-//! What every curve can do.
+//! Interface of all curves.
 
 use bilux_math::DVec3;
 

@@ -4,7 +4,7 @@ use super::curve::Curve;
 use bilux_math::DVec3;
 use bilux_math::transcendental::cos_f64;
 
-/// How close triangles and lines are to what they stand for.
+/// Accuracy of the triangles and lines that stand for surfaces and curves.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Accuracy {
     /// The greatest distance between a chord and its arc, in the file's units.

@@ -63,7 +63,7 @@ struct Parser<'a, 'r, 'o> {
     table: Table<'a>,
     /// Values of lists that are open.
     stack: Vec<Value>,
-    /// Where the values of each open list begin on the stack, and whether it is a typed value.
+    /// Place on the stack at which the values of each open list begin, and whether it is a typed value.
     starts: Vec<(usize, bool)>,
     /// The values that have been charged to the budget.
     charged: usize,
@@ -71,7 +71,7 @@ struct Parser<'a, 'r, 'o> {
 
 /// Why an instance cannot be read.
 enum Fault {
-    /// It is left out.
+    /// The instance is left out.
     Odd(&'static str),
     TooLarge(FormatError),
 }

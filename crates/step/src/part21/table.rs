@@ -19,11 +19,11 @@ pub(super) struct Record {
 pub(super) struct Instance {
     pub(super) first: u32,
     pub(super) count: u32,
-    /// Where it is in the file.
+    /// Offset of the instance in the file.
     pub(super) offset: u32,
 }
 
-/// What a file says.
+/// Contents of a file.
 pub(crate) struct Table<'a> {
     pub(super) bytes: &'a [u8],
     pub(super) file: Arc<str>,
@@ -35,7 +35,7 @@ pub(crate) struct Table<'a> {
     pub(super) order: Vec<u64>,
     /// True if the file has its end.
     pub(crate) is_whole: bool,
-    /// What was wrong while it was read.
+    /// Faults that were found while the file was read.
     pub(super) faults: Oddities,
 }
 
@@ -96,7 +96,7 @@ impl<'a> Table<'a> {
         found.map(|record| self.values_of(record))
     }
 
-    /// Where an instance is.
+    /// Place of an instance in the file.
     pub(crate) fn span(&self, id: u64) -> Span {
         let offset = self.instances.get(&id).map_or(0, |instance| instance.offset as usize);
         place(self.bytes, &self.file, offset)

@@ -1,4 +1,4 @@
-//! What the instances of a file mean: placements, units, styles, and the tree of products.
+//! Meaning of a file's instances: placements, units, styles, and the tree of products.
 
 pub(super) mod axes;
 pub(super) mod placements;

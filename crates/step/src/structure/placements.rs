@@ -22,7 +22,7 @@ pub(crate) struct Placed {
     pub(crate) units: Units,
     /// The name of its product.
     pub(crate) name: Arc<str>,
-    /// How it looks if nothing says so for itself.
+    /// Style of what states none for itself.
     pub(crate) style: Option<Style>,
 }
 
@@ -59,7 +59,7 @@ const SILENT: &[&str] =
 /// Assemblies within assemblies, up to this depth.
 const MAX_DEPTH: usize = 64;
 
-/// What entering a product or a representation counts against the budget, in bytes: time, rather than memory.
+/// Cost against the budget of entering a product or a representation, in bytes: time, rather than memory.
 const VISIT: u64 = 1024;
 
 /// All shapes, and metres per unit of the space that they are placed in.
@@ -92,7 +92,7 @@ struct Walk<'a, 't, 'b, 'o> {
     open: Vec<u64>,
 }
 
-/// What an item inherits from what it is in.
+/// Attributes that an item inherits from what it is in.
 #[derive(Clone)]
 struct Around {
     place: DMat4,

@@ -11,9 +11,9 @@ use std::collections::{HashMap, HashSet};
 pub(super) struct Use {
     /// The definition of the part's product.
     pub(super) product: u64,
-    /// Its place; `None` if nothing says.
+    /// Place of the part; `None` if nothing says.
     pub(super) place: Option<DMat4>,
-    /// What states it.
+    /// Instance that states the part.
     pub(super) id: u64,
 }
 
@@ -27,7 +27,7 @@ pub(super) struct Products<'t, 'b> {
     parts: HashMap<u64, Vec<Use>>,
     /// Representations that share coordinates.
     beside: HashMap<u64, Vec<u64>>,
-    /// What is placed within representations without products.
+    /// Representations that are placed within others, without products.
     within: HashMap<u64, Vec<(u64, DMat4)>>,
     /// Products that are part of none.
     roots: Vec<u64>,
@@ -146,7 +146,7 @@ impl<'t, 'b> Products<'t, 'b> {
         )
     }
 
-    /// Where a relation places a part. Some programs name the whole first.
+    /// Transform by which a relation places a part. Some programs name the whole first.
     fn place(&self, relation: u64, part: u64) -> Option<DMat4> {
         let [first, second] = self.related(relation)?;
         let place = self.transformation(relation, first, second)?;
@@ -173,7 +173,7 @@ impl<'t, 'b> Products<'t, 'b> {
         self.parts.get(&product).map_or(&[], |parts| parts)
     }
 
-    /// What is placed within a representation.
+    /// Representations that are placed within another.
     pub(super) fn within(&self, representation: u64) -> &[(u64, DMat4)] {
         self.within.get(&representation).map_or(&[], |within| within)
     }

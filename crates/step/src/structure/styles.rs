@@ -5,7 +5,7 @@ use bilux_math::Rgb;
 use bilux_math::colour::srgb_decode;
 use std::collections::{HashMap, HashSet};
 
-/// How something looks.
+/// Colour and opacity of something.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Style {
     /// In linear light.

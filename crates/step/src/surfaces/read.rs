@@ -13,7 +13,7 @@ use bilux_math::DVec3;
 /// Surfaces of surfaces end here.
 const MAX_DEPTH: usize = 8;
 
-/// What surfaces are read with.
+/// Unit and size with which surfaces are read.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scale {
     /// The unit of angles, in radians.

@@ -1,4 +1,4 @@
-//! What every surface can do.
+//! Interface of all surfaces.
 
 use bilux_math::{DVec2, DVec3};
 

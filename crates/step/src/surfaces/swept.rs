@@ -119,7 +119,7 @@ impl Surface for Revolution {
         on_axis.map(|at| Pole { along: 0, at, point: self.curve.point(at) }).collect()
     }
 
-    /// What a circle sweeps whose centre is on the axis, and whose plane contains it.
+    /// The sphere that a circle sweeps, if its centre is on the axis and its plane contains the axis: centre and radius.
     fn sphere(&self) -> Option<(DVec3, f64)> {
         const NEAR: f64 = 1e-7;
         let (centre, axis, radius) = self.curve.circle()?;

@@ -8,7 +8,7 @@ use bilux_math::DVec2;
 /// The corners of a line at which a cut is tried.
 const TRIED: usize = 48;
 
-/// How far a cut may miss the surface, as a part of the way from one corner to the next, and how often it may be halved.
+/// Largest distance of a cut from the surface, as a part of the way from one corner to the next, and the most halvings of a cut.
 const BENT: f64 = 0.02;
 const DEEPEST: usize = 7;
 
@@ -29,7 +29,7 @@ impl Around {
         turn
     }
 
-    /// How far a line is to the left of one that goes forwards along the axis.
+    /// Distance of a line to the left of one that goes forwards along the axis.
     fn height(self, path: &Path) -> f64 {
         let mean = path.mean(1 - self.axis);
         if self.axis == 0 { mean } else { -mean }
@@ -129,7 +129,7 @@ impl Around {
         best.map_or_else(Vec::new, |best| self.on_surface(surface, best.2, count))
     }
 
-    /// The same line with the cut on the surface, with the same points both ways. `end` is the corner at which the cut begins.
+    /// The line with its cut on the surface, with the same points both ways. `end` is the corner at which the cut begins.
     fn on_surface(self, surface: &dyn Surface, line: Vec<Corner>, end: usize) -> Vec<Corner> {
         let mut cut = Vec::new();
         follow(surface, [line[end], line[end + 1]], DEEPEST, &mut cut);
@@ -138,7 +138,7 @@ impl Around {
         low.iter().chain(&cut).chain(high).copied().chain(back).collect()
     }
 
-    /// How often holes cross a line, wherever they are found on the surface.
+    /// Number of times that holes cross a line, wherever they are found on the surface.
     fn crossings(self, cut: [DVec2; 2], holes: &[Path]) -> usize {
         let mut count = 0;
         for hole in holes {

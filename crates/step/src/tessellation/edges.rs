@@ -8,7 +8,7 @@ use bilux_math::DVec3;
 /// An edge as its instance describes it.
 pub(super) struct Edge {
     ends: [DVec3; 2],
-    /// Its curve, with the parameters of both ends; `None` for a line between them.
+    /// Curve of the edge, with the parameters of both ends; `None` for a line between them.
     along: Option<(Box<dyn Curve>, [f64; 2])>,
 }
 
@@ -49,7 +49,7 @@ impl Edge {
         points
     }
 
-    /// Its points from its first vertex to its second, with both.
+    /// Points of the edge from its first vertex to its second, with both.
     pub(super) fn points(&self, accuracy: Accuracy) -> Vec<DVec3> {
         let Some((curve, [from, to])) = &self.along else { return self.ends.to_vec() };
         let mut points = sampled(&**curve, *from, *to, accuracy);

@@ -16,7 +16,7 @@ pub(crate) struct Patch {
     pub(crate) positions: Vec<DVec3>,
     pub(crate) normals: Vec<DVec3>,
     pub(crate) triangles: Vec<[u32; 3]>,
-    /// What its surface took, which is charged too: many faces may share a large one.
+    /// Memory that the surface took, in bytes, which is charged too: many faces may share a large one.
     pub(crate) surface_bytes: usize,
 }
 
@@ -30,7 +30,7 @@ pub(super) struct Trimmed<'a> {
 }
 
 impl Trimmed<'_> {
-    /// Its triangles; `None` if its boundary encloses nothing.
+    /// Triangles of the face; `None` if its boundary encloses nothing.
     pub(super) fn patch(mut self, accuracy: Accuracy) -> Option<Patch> {
         let globe = self.surface.sphere().filter(|_| !self.lines.is_empty());
         // A swept circle may have its front inside of the sphere.

@@ -140,7 +140,7 @@ fn by_edges(mesh: &Mesh, odd: &HashMap<spade::handles::FixedUndirectedEdgeHandle
     known.into_iter().map(|is_inside| is_inside.unwrap_or(false)).collect()
 }
 
-/// The same by the middle of each face, where lines cross.
+/// For each face whether its middle is inside, for lines that cross.
 fn by_centres(mesh: &Mesh, loops: &[Vec<Corner>], step: DVec2, middle: DVec2) -> Vec<bool> {
     let mut inside = vec![false; mesh.num_all_faces()];
     for face in mesh.inner_faces() {

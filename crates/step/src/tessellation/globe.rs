@@ -7,7 +7,7 @@ use bilux_math::transcendental::{atan2_f64, sin_cos_f64, sin_f64, tan_f64};
 use bilux_math::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
-/// How close an inner point may be to the boundary, in steps.
+/// Least distance of an inner point from the boundary, in steps.
 const MARGIN: f64 = 0.4;
 
 /// The most steps from pole to pole.

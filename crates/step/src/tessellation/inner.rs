@@ -3,7 +3,7 @@
 use super::corner::{Corner, bounds};
 use bilux_math::DVec2;
 
-/// How close a point may be to the outline, in steps.
+/// Least distance of a point from the outline, in steps.
 const MARGIN: f64 = 0.35;
 
 /// The most corners next to a row that its points are compared with.

@@ -15,7 +15,7 @@ pub(super) struct Path {
 /// The lines at a pole between two neighbours have this many pieces for a whole turn.
 const PIECES: f64 = 32.0;
 
-/// What is closer to a whole period than this part of it is one.
+/// Tolerance for a whole period, as a part of it.
 const NEAR: f64 = 1e-6;
 
 impl Path {

@@ -20,7 +20,7 @@ pub(crate) struct Face {
     pub(crate) id: u64,
     /// True if the shape turns its side.
     pub(crate) is_turned: bool,
-    /// How it looks, as it, its shell or its shape states.
+    /// Style of the face, as it, its shell or its shape states.
     pub(crate) style: Option<Style>,
 }
 
@@ -82,7 +82,7 @@ fn is_part(kind: &[u8], table: &Table, id: u64) -> bool {
         || table.is(id, "MANIFOLD_SOLID_BREP")
 }
 
-/// What the faces of a shape have in common.
+/// State that the faces of a shape have in common.
 pub(crate) struct Shape<'t, 'b> {
     table: &'t Table<'b>,
     accuracy: Accuracy,

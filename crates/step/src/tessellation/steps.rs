@@ -1,4 +1,4 @@
-//! How far apart the points of a surface may be.
+//! Distances between the points of a surface.
 
 use crate::curves::Accuracy;
 use crate::surfaces::Surface;

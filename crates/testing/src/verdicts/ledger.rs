@@ -12,7 +12,7 @@ use std::sync::LazyLock;
 /// The file of verdicts.
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/verdicts.txt");
 
-/// That of this process.
+/// Ledger of this process.
 pub(super) static LEDGER: LazyLock<Ledger> = LazyLock::new(|| {
     let folder = std::env::var_os("BILUX_VERDICTS_OUT");
     let ledger = Ledger::of(is_long(), folder, || std::fs::read_to_string(Path::new(FILE)));
@@ -27,13 +27,13 @@ pub(super) enum Ledger {
     Unused,
     /// All run whole, and their verdicts go to this process's file in this folder.
     Recording(PathBuf),
-    /// Those that are recorded need not.
+    /// Recorded comparisons need not run whole.
     Recorded(Records),
 }
 
-/// What decides a comparison.
+/// Circumstances that decide a comparison.
 pub(super) struct Question {
-    /// What decides beside the bits of pictures.
+    /// Circumstances beside the bits of pictures.
     pub(super) asked: String,
     /// Hashes of what was rendered first.
     pub(super) firsts: Vec<Hash>,

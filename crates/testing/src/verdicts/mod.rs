@@ -29,7 +29,7 @@ pub struct Suite {
 }
 
 impl Suite {
-    /// That of a crate: `Suite::new(env!("CARGO_PKG_NAME"))`.
+    /// Suite of a crate: `Suite::new(env!("CARGO_PKG_NAME"))`.
     pub const fn new(name: &'static str) -> Suite {
         Suite { name }
     }
@@ -48,7 +48,7 @@ impl Suite {
         self.verdict(case, &asked, vec![a.first(), b.first()], whole)[0]
     }
 
-    /// What `numbers` says of so many samples or pictures, of which a sixteenth is rendered first, by the same `render`.
+    /// Results of `numbers` for so many samples or pictures, of which a sixteenth is rendered first, by the same `render`.
     /// `asked` says what decides beside them.
     pub fn numbers<P: Bits>(
         &self,

@@ -22,7 +22,7 @@ pub struct Record {
     pub asked: String,
     /// Hashes of what was rendered first, on each side.
     pub firsts: Vec<Hash>,
-    /// What the whole run gave: a p-value, or means with their errors.
+    /// Results of the whole run: a p-value, or means with their errors.
     pub numbers: Vec<f64>,
 }
 

@@ -3,7 +3,7 @@
 use crate::values::Shown;
 use std::fmt::Write;
 
-/// What a value is put into.
+/// Table of a scene file that a value is put into.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Table {
     Materials,

@@ -10,7 +10,7 @@ struct Line<'a> {
     settings: Vec<&'a str>,
 }
 
-/// What a strip shows.
+/// Contents of a strip.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Shown {
     /// As in scene files; `none` leaves the parameter out.
@@ -21,7 +21,7 @@ pub(crate) struct Shown {
     pub(crate) stage: String,
 }
 
-/// What the strip of a parameter shows, by a list.
+/// Contents of a parameter's strip, by a list.
 pub(crate) fn shown(list: &str, entry: &Entry, parameter: &Parameter) -> Shown {
     let lines = || list.lines().filter(|line| !line.starts_with('#')).filter_map(read);
     let find = |kind: &str, name: &str| lines().find(|line| line.kind == kind && line.parameter == name);

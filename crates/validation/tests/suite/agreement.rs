@@ -35,7 +35,7 @@ fn scenes() -> Vec<(&'static str, SceneBuilder)> {
     ]
 }
 
-/// What each technique finds in a stage, if there is another to compare it with.
+/// Evidence of each technique in a stage, if there is another to compare it with.
 struct Found(Vec<Option<Evidence>>);
 
 impl Bits for Found {

@@ -53,7 +53,7 @@ fn pictures(scene: &Scene, integrator: &Spec, settings: &RenderSettings, count: 
     (0..u64::from(count)).map(of_seed).collect()
 }
 
-/// What is found for `numbers` of all pictures: by the record of this case, where the first picture is as it was.
+/// Results for `numbers` of all pictures: by the record of this case, where the first picture is as it was.
 fn found(
     case: &str,
     asked: &str,

@@ -65,7 +65,7 @@ fn teapot_file() -> String {
     asc
 }
 
-/// Where an edge passes a pixel's corner more closely than f32 resolves, the two may see different things.
+/// Pixels that may differ: where an edge passes a pixel's corner more closely than f32 resolves, the two may see different things.
 const ON_EDGES: usize = 4;
 
 #[test]

@@ -31,7 +31,7 @@ fn luminous(name: &str, mesh: Mesh, motion: &Motion, instanced: bool, time: f32)
     luminous_on(2.0, name, mesh, motion, instanced, time)
 }
 
-/// The same, emitting only in front.
+/// A mesh with a motion that emits only in front.
 fn in_front(name: &str, mesh: Mesh, motion: &Motion, instanced: bool, time: f32) -> LightCase {
     luminous_on(1.0, name, mesh, motion, instanced, time)
 }
@@ -243,7 +243,7 @@ struct BuggyLight {
     defect: Defect,
 }
 
-/// Where the bug is.
+/// Place of the bug.
 #[derive(Clone, Copy)]
 enum Defect {
     /// In the rays that it emits.

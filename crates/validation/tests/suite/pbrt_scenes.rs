@@ -124,7 +124,7 @@ const AROUND_THE_PLATES: [[f64; 4]; 5] = [
     [0.63, 0.68, 0.15, 0.25],
 ];
 
-/// Where the plates are bright.
+/// Regions in which the plates are bright.
 const ON_THE_PLATES: [[f64; 4]; 4] =
     [[0.62, 0.68, 0.38, 0.48], [0.62, 0.68, 0.54, 0.6], [0.46, 0.54, 0.68, 0.73], [0.4, 0.6, 0.82, 0.87]];
 

@@ -46,7 +46,7 @@ fn at(surface: &Surface, numbers: &[(&str, f32)], base: Rgb) -> Bsdf {
 
 const ORANGE: Rgb = Rgb { r: 0.9, g: 0.5, b: 0.1 };
 
-/// Its name, its parameters, and whether it refracts light.
+/// Name and parameters of a material, and whether it refracts light.
 type Case = (&'static str, &'static [(&'static str, f32)], bool);
 
 const CASES: &[Case] = &[
@@ -183,7 +183,7 @@ fn range(weights: &[Vec<f32>]) -> [f64; 2] {
     [seen.clone().fold(f64::INFINITY, f64::min), seen.fold(0.0, f64::max)]
 }
 
-/// What is seen in a furnace: by the record of these parameters, where the first samples are as they were.
+/// Range of the light seen in a furnace: by the record of these parameters, where the first samples are as they were.
 fn furnace(numbers: &[(&str, f32)]) -> [f64; 2] {
     let bsdf = principled(numbers, Rgb::WHITE);
     let found = SUITE.numbers(

@@ -1,4 +1,4 @@
-//! What vertices add to a material: colours that they emit, opacities and their threshold, and widths of points. Each
+//! Attributes that vertices add to a material: colours that they emit, opacities and their threshold, and widths of points. Each
 //! against its closed form.
 
 use bilux::math::{Rgb, Vec3};

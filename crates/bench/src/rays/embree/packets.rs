@@ -13,7 +13,7 @@ const FLAG_COHERENT: u32 = 1 << 16;
 /// Packets of four, eight and sixteen rays are native.
 const PROPERTIES_NATIVE: [(usize, u32); 3] = [(4, 32), (8, 33), (16, 34)];
 
-/// How rays are passed to Embree.
+/// Packing of rays for Embree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::rays) struct Packets {
     /// The number of rays in a call: 1, 4, 8 or 16.
@@ -25,7 +25,7 @@ pub(in crate::rays) struct Packets {
 impl Packets {
     const ONE: Packets = Packets { width: 1, coherent: false };
 
-    /// How rays can be passed to Embree on this machine: one by one, in packets of each width that it traces as such (it
+    /// Every way of passing rays to Embree on this machine: one by one, in packets of each width that it traces as such (it
     /// takes others apart), and in the widest of them as coherent rays.
     pub(in crate::rays) fn ways(embree: &Embree) -> Vec<Packets> {
         // SAFETY: the device lives as long as `embree`; version 4 has these properties.
@@ -38,7 +38,7 @@ impl Packets {
         [Packets::ONE].into_iter().chain(of_width).chain(coherent).collect()
     }
 
-    /// What follows the name of a tree in the name of an engine.
+    /// Suffix to the name of a tree in the name of an engine.
     pub(in crate::rays) fn suffix(self) -> String {
         match self {
             Packets::ONE => String::new(),

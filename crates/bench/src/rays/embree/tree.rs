@@ -17,7 +17,7 @@ const FORMAT_FLOAT3: u32 = 0x9003;
 const GEOMETRY_TRIANGLE: u32 = 0;
 const FLAG_ROBUST: u32 = 1 << 2;
 
-/// How a tree is built.
+/// Build configuration of a tree.
 #[derive(Clone, Copy)]
 pub(in crate::rays) struct Kind {
     pub(in crate::rays) name: &'static str,

@@ -10,7 +10,7 @@ use bilux_import::world::between_keys::{bezier, slerp};
 use bilux_math::glam::DQuat;
 use bilux_math::{DMat4, DVec3};
 
-/// How values run from a key to the next.
+/// Interpolation from a key to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Interpolation {
     Step,

@@ -100,7 +100,7 @@ impl Pose {
         Ok(pose)
     }
 
-    /// What replaces the numbers of an element, in order.
+    /// The values that replace numbers of an element, in order.
     pub(super) fn of(&self, element: Element) -> &[Set] {
         self.animated.get(&element.key()).map_or(&[], |sets| sets)
     }

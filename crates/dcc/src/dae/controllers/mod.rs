@@ -1,4 +1,4 @@
-//! What deforms meshes: skins on bones, and morphs between shapes.
+//! Deformers of meshes: skins on bones, and morphs between shapes.
 
 mod morph;
 mod skin;

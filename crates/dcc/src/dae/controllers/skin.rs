@@ -107,8 +107,8 @@ fn add_weights(
     Ok(())
 }
 
-/// Where each joint is; `None` for one that is missing. A name is a sid in the skeletons of the instance, or else anywhere in the scene,
-/// or an id, or even just a name.
+/// Transform of each joint; `None` for one that is missing. A name is a sid in the skeletons of the instance, or else
+/// anywhere in the scene, or an id, or even just a name.
 fn places<'d>(
     source: Element<'d>,
     skin: Element<'d>,

@@ -1,4 +1,4 @@
-//! What the models of the common profile say.
+//! Values of the common profile's models.
 
 use super::bindings::Worn;
 use super::effect::{Effect, Model};
@@ -125,7 +125,7 @@ impl<'d> Filling<'_, '_, 'd, '_> {
         }
     }
 
-    /// What a texture element refers to; `None`, with a warning, if it cannot be read.
+    /// The texture of a texture element; `None`, with a warning, if it cannot be read.
     pub(super) fn texture(
         &mut self,
         map: Element<'d>,

@@ -4,7 +4,7 @@ use crate::dae::document::Document;
 use crate::dae::element::Element;
 use bilux_import::input::oddities::Oddities;
 
-/// How light is reflected.
+/// Reflection model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Model {
     Constant,
@@ -19,7 +19,7 @@ pub(super) struct Effect<'d> {
     pub(super) model: Model,
     /// The values of the model.
     pub(super) shader: Element<'d>,
-    /// Where parameters are found, the nearest first.
+    /// Elements that may hold parameters, the nearest first.
     scopes: Vec<Element<'d>>,
 }
 
@@ -53,7 +53,7 @@ impl<'d> Effect<'d> {
         Some(Effect { element, model, shader, scopes: scopes.into_iter().flatten().collect() })
     }
 
-    /// What a parameter is set to.
+    /// The element that declares or sets a parameter.
     pub(super) fn parameter(&self, name: &str) -> Option<Element<'d>> {
         self.scopes.iter().find_map(|scope| {
             scope.children().find(|child| match child.name() {

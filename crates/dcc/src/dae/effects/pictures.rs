@@ -78,7 +78,7 @@ fn file_of(image: Element<'_>) -> Option<&str> {
     Some(text).filter(|text| !text.is_empty())
 }
 
-/// How the file may be called: as stated, or where programs put textures beside their scenes.
+/// Paths at which the file may be: as stated, or in the folders where programs put textures beside their scenes.
 fn candidates(uri: &str) -> Vec<String> {
     let mut all = spellings(uri);
     for name in all.clone() {
@@ -90,7 +90,7 @@ fn candidates(uri: &str) -> Vec<String> {
     all
 }
 
-/// How the picture lies, as Maya says: texture coordinates are repeated, rotated about the middle, and moved.
+/// Placement of the picture, as Maya states it: texture coordinates are repeated, rotated about the middle, and moved.
 fn placement(map: Element) -> Option<UvTransform> {
     let techniques = map.children_named("extra").flat_map(|extra| extra.children_named("technique"));
     let technique = techniques.filter(|technique| technique.child("repeatU").is_some()).last()?;

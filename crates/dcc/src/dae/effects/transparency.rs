@@ -1,4 +1,4 @@
-//! What lets light through, in four modes, which exporters use in ways that contradict each other. See
+//! Opacity, which files state in four modes; exporters use these in ways that contradict each other. See
 //! `docs/formats/collada.md`.
 
 use super::common::Filling;
@@ -93,7 +93,7 @@ impl Filling<'_, '_, '_, '_> {
     }
 }
 
-/// What is missing to 1 of the channel of a texture, times a factor.
+/// Complement to 1 of a texture's channel times a factor.
 fn inverted(texture: &Texture, factor: f32) -> Image {
     let (width, height) = (texture.width(), texture.height());
     let rest = |texel: [u8; 4]| {

@@ -8,7 +8,7 @@ use bilux_import::FormatError;
 use bilux_import::meshes::polygon_mesh::{Layer, Mapping, PolygonMesh, Polygons, Workshop, reflectances};
 use bilux_math::{Rgb, Vec2, Vec3};
 
-/// What nodes bind a material to.
+/// A symbol, to which nodes bind a material.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::dae) struct Symbol<'d> {
     pub(in crate::dae) name: Option<&'d str>,
@@ -36,12 +36,12 @@ pub(super) struct Builder {
     uvs: [Option<Channel<Vec2>>; 2],
     colours: Option<Channel<Rgb>>,
     materials: Vec<i32>,
-    /// Those of the current primitive.
+    /// Ranges of the current primitive.
     ranges: Ranges,
     material: i32,
 }
 
-/// What the vertices of a primitive refer to.
+/// The ranges of values to which the vertices of a primitive refer.
 #[derive(Default)]
 struct Ranges {
     position: Option<Range>,

@@ -1,4 +1,4 @@
-//! What corners have of one kind: normals, texture coordinates or colours, perhaps from several sources.
+//! Values of one kind at corners: normals, texture coordinates or colours, perhaps from several sources.
 
 use crate::dae::data::Table;
 use crate::dae::document::Document;
@@ -13,11 +13,11 @@ use std::collections::HashMap;
 pub(super) struct Channel<T> {
     values: Vec<T>,
     indices: Vec<i32>,
-    /// Where the values of a source begin, and how many they are.
+    /// Range of the values of each source.
     ranges: HashMap<NodeId, Range>,
 }
 
-/// Where the index of a vertex is among its indices, and which values it counts.
+/// Place of a range's index among the indices of a vertex, and the values that this index counts.
 #[derive(Clone, Copy)]
 pub(super) struct Range {
     pub(super) offset: usize,
@@ -75,7 +75,7 @@ impl<T: Copy> Channel<T> {
         self.values
     }
 
-    /// What each corner has.
+    /// The values as a layer by corner.
     pub(super) fn into_layer(self) -> Layer<T> {
         if self.values.is_empty() {
             return Layer::default();

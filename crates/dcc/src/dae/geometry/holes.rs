@@ -5,7 +5,7 @@ use bilux_math::{DVec2, DVec3, Vec3};
 /// The most corners of a polygon with holes whose bridges are looked for.
 const MAX_CORNERS: usize = 2048;
 
-/// How many of the shortest bridges from a hole's corner are tried.
+/// Number of bridges from a hole's corner that are tried, the shortest first.
 const MAX_TRIED: usize = 64;
 
 /// The corners of a polygon that runs around an outline and, over bridges, around its holes, as numbers of corners:

@@ -1,6 +1,6 @@
 //! The name and the times of an animation.
 
-/// What an animation is, before its curves are read.
+/// An animation before its curves are read.
 pub(super) struct Clip {
     pub(super) name: String,
     /// When it begins and ends, in units of time of the file.

@@ -19,7 +19,7 @@ const BETWEEN: i64 = 0x4000;
 const WEIGHTED_RIGHT: u32 = 0x100_0000;
 const WEIGHTED_NEXT_LEFT: u32 = 0x200_0000;
 
-/// What a curve does before its first key or after its last.
+/// Extrapolation of a curve before its first key or after its last.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Extrapolation {
     Constant,
@@ -181,7 +181,7 @@ fn from_bits(number: f64, node: Node) -> f32 {
     if is_bits { f32::from_bits(number as i64 as i32 as u32) } else { number as f32 }
 }
 
-/// What the flags and the data of a key say about the way to the next.
+/// Interpolation to the next key, from the flags and the data of a key.
 fn interpolation(flags: i64, data: &[f32]) -> Interpolation {
     if flags & CONSTANT != 0 {
         return Interpolation::Constant { is_next: flags & CONSTANT_NEXT != 0 };

@@ -1,6 +1,6 @@
 //! Keys of curves.
 
-/// How values run from a key to the next.
+/// Interpolation from a key to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Interpolation {
     /// The value of the key, or of the next.
@@ -25,7 +25,7 @@ pub(super) struct Key {
     pub(super) interpolation: Interpolation,
 }
 
-/// How a key's slopes are found.
+/// Source of a key's slopes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Tangent {
     /// They are stated.
@@ -36,18 +36,18 @@ pub(super) enum Tangent {
     Shaped([f64; 3]),
 }
 
-/// How automatic slopes are chosen.
+/// Rule for automatic slopes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rule {
     /// Flat next to a key of the same value.
     pub(super) is_clamped: bool,
     /// Never so steep that the curve leaves the range of the two keys that it is between.
     pub(super) stays_between: bool,
-    /// That of the straight line between the neighbours, wherever the key is between them.
+    /// The slope of the straight line between the neighbours, wherever the key is between them.
     pub(super) is_straight: bool,
 }
 
 impl Rule {
-    /// What programs use unless told otherwise.
+    /// The rule that programs use unless told otherwise.
     pub(super) const USUAL: Rule = Rule { is_clamped: false, stays_between: true, is_straight: true };
 }

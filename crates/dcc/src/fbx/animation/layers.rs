@@ -21,7 +21,7 @@ pub(super) fn clip(document: &Document, stack: Index) -> Clip {
     Clip { name, begin: time(["LocalStart", "ReferenceStart"]), end: time(["LocalStop", "ReferenceStop"]) }
 }
 
-/// How a layer changes what the layers below it say.
+/// Blend mode of a layer over the layers below it.
 #[derive(Clone, Copy, PartialEq)]
 enum Blend {
     Replace,
@@ -137,7 +137,7 @@ fn values(
     Ok(values)
 }
 
-/// What a layer makes of the values below it. Rotations are by angle only if it says so.
+/// Values after a layer, from the values below it. Rotations are by angle only if the layer says so.
 fn combined(
     blend: Blend,
     property: &[u8],

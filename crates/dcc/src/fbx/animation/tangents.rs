@@ -50,7 +50,7 @@ struct Around {
     before: Option<DVec2>,
     here: DVec2,
     after: Option<DVec2>,
-    /// How far the tangents reach to both sides, as parts of the intervals.
+    /// Reach of the tangents to both sides, as parts of the intervals.
     weights: [f64; 2],
 }
 

@@ -1,4 +1,4 @@
-//! What the XML file of a Maya cache says of it.
+//! Description of a Maya cache, in an XML file.
 
 use bilux_import::FormatError;
 use bilux_import::bytes::xml::Xml;

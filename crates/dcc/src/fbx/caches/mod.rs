@@ -17,7 +17,7 @@ use bilux_import::input::reading::Reading;
 use bilux_math::Vec3;
 use file::{CacheFile, Counts};
 
-/// What the caches of a mesh say of it at a time.
+/// Positions and normals from the caches of a mesh, at a time.
 #[derive(Default)]
 pub(super) struct Cached {
     /// For each control point.
@@ -27,7 +27,7 @@ pub(super) struct Cached {
 }
 
 impl Cached {
-    /// What is cached of a mesh, if anything is. A cache that cannot be read is left out, with a warning.
+    /// Cached positions and normals of a mesh, if there are any. A cache that cannot be read is left out, with a warning.
     pub(super) fn read(
         geometry: Index,
         posed: &Posed,
@@ -64,7 +64,7 @@ impl Cached {
         Ok(found)
     }
 
-    /// Its memory.
+    /// Memory in bytes.
     pub(super) fn bytes(&self) -> u64 {
         (size_of_val(&self.positions[..]) + size_of_val(&self.normals[..])) as u64
     }

@@ -1,4 +1,4 @@
-//! What deforms meshes: blend shapes, and skins on bones; or a cache in place of both.
+//! Deformers of meshes: blend shapes, and skins on bones; or a cache in place of both.
 
 mod shapes;
 mod skin;
@@ -20,7 +20,7 @@ pub(super) struct Deformers<'d> {
 }
 
 impl<'d> Deformers<'d> {
-    /// Those of a mesh.
+    /// Deformers of a mesh.
     pub(super) fn of(
         geometry: Index,
         posed: &Posed<'d>,

@@ -11,7 +11,7 @@ use bilux_math::Vec3;
 
 /// A channel with the shapes that it runs through.
 pub(super) struct Channel<'d> {
-    /// How far it is, in percent.
+    /// Position of the channel, in percent.
     pub(super) percent: f64,
     /// The list of the percentages at which each shape is reached.
     full: Option<Node<'d>>,
@@ -57,7 +57,7 @@ pub(super) fn old_channels<'d>(mesh: Index, posed: &Posed<'d>) -> Vec<Channel<'d
 }
 
 impl Channel<'_> {
-    /// How much there is of each shape.
+    /// Weight of each shape.
     fn weights(&self, workshop: &mut Workshop) -> Result<Vec<f64>, FormatError> {
         let mut full: Vec<f64> = self.full.map_or(Ok(Vec::new()), |list| list.numbers(workshop.budget))?;
         full.resize(self.shapes.len(), 100.0);

@@ -91,7 +91,7 @@ fn for_each_weight(
     Ok(())
 }
 
-/// How much of each vertex of a skin is the blend of dual quaternions.
+/// Share of dual-quaternion blending at each vertex of a skin.
 fn shares(skin: Node, count: usize, workshop: &mut Workshop) -> Result<Vec<f64>, FormatError> {
     workshop.budget.take::<f64>(count.max(1), skin.file())?;
     let mut shares = vec![0.0; count.max(1)];

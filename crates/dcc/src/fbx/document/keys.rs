@@ -1,4 +1,4 @@
-//! What objects are called.
+//! Names and numbers of objects.
 
 use crate::fbx::tree::Value;
 
@@ -8,7 +8,7 @@ pub(in crate::fbx) type Index = u32;
 /// The object that stands for the scene.
 pub(in crate::fbx) const ROOT: Index = 0;
 
-/// What an object is called in connections: a number since version 7, a name before.
+/// Key of an object in connections: a number since version 7, a name before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Key<'d> {
     Number(i64),

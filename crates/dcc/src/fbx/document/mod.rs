@@ -27,9 +27,9 @@ use std::path::Path;
 #[derive(Clone, Copy)]
 pub(super) struct Object<'d> {
     pub(super) node: Node<'d>,
-    /// What it is called, in the file's bytes, without its class.
+    /// Name of the object, in the file's bytes, without its class.
     pub(super) name: &'d [u8],
-    /// What kind of its class it is, such as `Mesh`; may be empty.
+    /// Kind within the object's class, such as `Mesh`; may be empty.
     pub(super) kind: &'d [u8],
 }
 
@@ -43,7 +43,7 @@ pub(super) struct Document<'d> {
     pub(super) settings: Settings,
     /// The folder of the file.
     pub(super) folder: Option<&'d Path>,
-    /// Its name without folder and extension.
+    /// Name of the file without folder and extension.
     pub(super) stem: String,
 }
 
@@ -118,17 +118,17 @@ impl<'d> Document<'d> {
         1..self.objects.len() as Index
     }
 
-    /// What class an object is of, such as `Model`.
+    /// Class of an object, such as `Model`.
     pub(super) fn class(&self, index: Index) -> &'d [u8] {
         if index == ROOT { b"" } else { self.object(index).node.name() }
     }
 
-    /// What is connected to an object, in the order of the file.
+    /// Links of the objects that are connected to an object, in the order of the file.
     pub(super) fn sources(&self, target: Index) -> &[Link<'d>] {
         self.connections.sources(target)
     }
 
-    /// What an object is connected to.
+    /// Links to the objects to which an object is connected.
     pub(super) fn targets(&self, source: Index) -> impl Iterator<Item = &Link<'d>> {
         self.connections.targets(source)
     }

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 /// The values of each property, by its name.
 type Table<'d> = HashMap<&'d [u8], Values<'d>>;
 
-/// What objects of a class have in common.
+/// Properties that objects of a class have in common.
 pub(super) struct Template<'d> {
     name: &'d [u8],
     table: Table<'d>,
@@ -31,7 +31,7 @@ impl<'d, 't> Properties<'d, 't> {
         Properties { own: table(node), template: template.map(|template| &template.table), animated: None }
     }
 
-    /// The same with values of an animation.
+    /// These properties with values of an animation.
     pub(in crate::fbx) fn animated(self, animated: Option<&'t Animated<'d>>) -> Properties<'d, 't> {
         Properties { animated, ..self }
     }

@@ -7,10 +7,10 @@ use bilux_math::{DMat3, DMat4, DVec3};
 
 /// Ticks of time per second up to version 7.
 const TICKS: f64 = 46_186_158_000.0;
-/// Those of version 8, which files may opt into before.
+/// Ticks of version 8, which files may opt into before.
 const NEW_TICKS: f64 = 141_120_000.0;
 
-/// What holds for all of a file.
+/// Settings of the whole file.
 pub(in crate::fbx) struct Settings {
     /// From the file's axes and unit to metres with y up: x to the right, and z to the front.
     pub(in crate::fbx) to_world: DMat4,
@@ -23,7 +23,7 @@ pub(in crate::fbx) struct Settings {
     pub(in crate::fbx) creator: String,
     /// True for files that Blender wrote: its colours are linear.
     pub(in crate::fbx) is_of_blender: bool,
-    /// Its lamps are as bright as stated up to a distance, and are not in watts: those of Blender before 2.80.
+    /// True for files of Blender before 2.80, whose lamps are as bright as stated up to a distance, and are not in watts.
     pub(in crate::fbx) lamps_have_reach: bool,
 }
 
@@ -108,7 +108,7 @@ fn is_before_280(creator: &[u8]) -> bool {
     version.is_some_and(|version| version < (2, 80))
 }
 
-/// What the file says of the program that wrote it, in two places.
+/// Names of the program that wrote the file, from two places.
 fn creators<'a>(root: Node<'a>) -> impl Iterator<Item = &'a [u8]> {
     let header = root.child("FBXHeaderExtension");
     let creators = [root.child_value("Creator"), header.and_then(|header| header.child_value("Creator"))];

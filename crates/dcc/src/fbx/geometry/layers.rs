@@ -5,7 +5,7 @@ use bilux_import::FormatError;
 use bilux_import::bytes::text::quoted;
 use bilux_import::meshes::polygon_mesh::{Layer, Mapping, Workshop};
 
-/// What the elements of a layer belong to.
+/// Mapping of a layer's elements to what they belong to.
 fn mapping_of(layer: Node) -> Option<Mapping> {
     Some(match layer.child_value("MappingInformationType")?.text()? {
         b"ByPolygonVertex" => Mapping::ByCorner,
@@ -23,7 +23,7 @@ pub(in crate::fbx) fn nodes<'d>(mesh: Node<'d>, element: &str) -> Vec<Node<'d>> 
     layers
 }
 
-/// What the elements of layers belong to.
+/// Corners and control points, to which the elements of layers belong.
 #[derive(Clone, Copy)]
 pub(super) struct Surface<'s> {
     /// The control point of each corner.

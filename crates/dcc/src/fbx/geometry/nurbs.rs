@@ -147,7 +147,7 @@ impl Direction {
         Some(Direction { basis, points })
     }
 
-    /// What counts at the parameters at which each piece is divided into so many steps.
+    /// Values and slopes of the basis functions at the parameters that divide each piece into so many steps.
     fn places(&self, steps: usize) -> Vec<Weights> {
         let ends = self.basis.ends();
         let within = |pair: &[f64]| {

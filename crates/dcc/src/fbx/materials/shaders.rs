@@ -9,7 +9,7 @@ use bilux_import::FormatError;
 use bilux_math::{DVec3, Rgb};
 use bilux_scene::texture::Channel;
 
-/// What a parameter of ours comes from: the names of its value, of a factor on it, and of its texture.
+/// Sources of a parameter of ours: the names of its value, of a factor on it, and of its texture.
 struct Row {
     key: &'static str,
     values: &'static [&'static str],

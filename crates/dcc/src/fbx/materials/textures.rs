@@ -156,7 +156,7 @@ fn base_name(name: &str) -> String {
     name.rsplit(['/', '\\']).next().unwrap_or_default().to_owned()
 }
 
-/// Where the file may be: as stated, or where programs put textures beside their scenes.
+/// Paths at which the file may be: as stated, or in the folders where programs put textures beside their scenes.
 fn candidates(names: &[String], stem: &str) -> Vec<String> {
     let mut all: Vec<String> = names.to_vec();
     for name in names {
@@ -184,7 +184,7 @@ fn content_of<'d>(node: Node<'d>, reading: &mut Reading) -> Result<Cow<'d, [u8]>
     Ok(Cow::Owned(bytes))
 }
 
-/// How the picture lies: texture coordinates are scaled and rotated about pivots, and moved.
+/// Placement of the picture: texture coordinates are scaled and rotated about pivots, and moved.
 fn placement(properties: &Properties) -> Option<UvTransform> {
     let pair = |name: &str, default: f32| {
         properties.vector(name).map_or([default; 2], |vector| [vector.x as f32, vector.y as f32])

@@ -3,11 +3,11 @@
 use flate2::read::ZlibDecoder;
 use std::io::Read;
 
-/// What the numbers of an array become.
+/// A type of number that the numbers of an array become.
 pub(in crate::fbx) trait Number: Copy {
     /// From a number of the file; the conversion to integers saturates.
     fn of(number: f64) -> Self;
-    /// The same of an integer.
+    /// From an integer of the file; the conversion to integers saturates.
     fn of_integer(integer: i64) -> Self;
     /// True for the same bits.
     fn is(self, other: Self) -> bool;
@@ -98,7 +98,7 @@ const LARGEST_RATIO: u64 = 1032;
 const CHUNK: usize = 96 * 340;
 
 impl PackedArray<'_> {
-    /// How many numbers there are, unless the bytes cannot hold so many.
+    /// Number of elements, unless the bytes cannot hold so many.
     pub(super) fn count(&self) -> Result<usize, String> {
         let most = if self.is_packed {
             LARGEST_RATIO * (1 + self.bytes.len() as u64)

@@ -13,7 +13,7 @@ const HEADER: usize = 27;
 /// From this version on, records count in 64 bits.
 const WIDE: u32 = 7500;
 
-/// What the first bytes say.
+/// The first bytes of a file.
 pub(super) struct Header {
     pub(super) version: u32,
     pub(super) is_big_endian: bool,
@@ -37,11 +37,11 @@ impl Header {
 
 /// The beginning of a record.
 struct Start<'a> {
-    /// Where the record ends; 0 marks the end of a list.
+    /// End of the record; 0 marks the end of a list.
     end: u64,
     values: u64,
     name: &'a [u8],
-    /// Where its values begin.
+    /// Offset of the record's values.
     after: usize,
 }
 

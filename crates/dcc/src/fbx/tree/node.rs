@@ -57,7 +57,7 @@ impl<'d> Node<'d> {
         })
     }
 
-    /// Those with a name.
+    /// The children with a name.
     pub(in crate::fbx) fn children_named<'n>(
         self,
         name: &'n str,
@@ -65,7 +65,7 @@ impl<'d> Node<'d> {
         self.children().filter(move |child| child.name() == name.as_bytes())
     }
 
-    /// The first one with a name.
+    /// The first child with a name.
     pub(in crate::fbx) fn child(&self, name: &str) -> Option<Node<'d>> {
         self.children_named(name).next()
     }
@@ -126,7 +126,7 @@ impl<'d> Node<'d> {
         Ok(())
     }
 
-    /// Its values; in text the numbers of an array are a node of their own.
+    /// Values of the node; in text the numbers of an array are a node of their own.
     fn listed(&self) -> Values<'d> {
         match self.value(0) {
             Some(Value::Length) => self.child("a").map_or(self.values(), |list| list.values()),
@@ -139,7 +139,7 @@ impl<'d> Node<'d> {
         self.tree.encoding != Encoding::Text
     }
 
-    /// Where it is: a line of a text, or the whole of a binary file.
+    /// Place of the node: a line of a text, or the whole of a binary file.
     pub(in crate::fbx) fn at(&self) -> Span {
         match self.tree.encoding {
             Encoding::Text => self.tree.places.at(self.record().offset),

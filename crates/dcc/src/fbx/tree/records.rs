@@ -6,7 +6,7 @@ use bilux_import::bytes::budget::Budget;
 /// Deeper nodes are refused; real files have about ten levels.
 pub(super) const MAX_DEPTH: usize = 64;
 
-/// How values are written.
+/// Encoding of values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Encoding {
     Text,
@@ -16,9 +16,9 @@ pub(super) enum Encoding {
 /// A node.
 pub(super) struct Record<'a> {
     pub(super) name: &'a [u8],
-    /// Its values, as the file has them.
+    /// Values of the node, as the file has them.
     pub(super) values: &'a [u8],
-    /// Where it begins in the file.
+    /// Offset of the node in the file.
     pub(super) offset: usize,
     /// The index after that of its last descendant.
     pub(super) end: u32,

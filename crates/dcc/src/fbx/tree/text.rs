@@ -5,7 +5,7 @@ use super::records::{Builder, MAX_DEPTH};
 use bilux_import::FormatError;
 use bilux_import::bytes::text::Places;
 
-/// What every text has near its beginning.
+/// Name of a node that every text has near its beginning.
 const FIRST_NODE: &[u8] = b"FBXHeaderExtension";
 
 /// True if the bytes look like a file in text.

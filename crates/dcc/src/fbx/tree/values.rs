@@ -19,7 +19,7 @@ pub(in crate::fbx) enum Value<'a> {
 }
 
 impl<'a> Value<'a> {
-    /// It as a number; a word may be one in the spelling of some library.
+    /// The value as a number; a word may be one in the spelling of some library.
     pub(in crate::fbx) fn number(self) -> Option<f64> {
         match self {
             Value::Integer(integer) => Some(integer as f64),
@@ -46,7 +46,7 @@ impl<'a> Value<'a> {
     }
 }
 
-/// What C libraries print for numbers that are none: `1.#QNAN`, `-1.#IND`, `nan(ind)`, `1.#INF`.
+/// A number from what C libraries print for numbers that are none: `1.#QNAN`, `-1.#IND`, `nan(ind)`, `1.#INF`.
 fn not_finite(word: &[u8]) -> Option<f64> {
     let text = String::from_utf8_lossy(word).to_lowercase();
     let has = |part: &str| text.contains(part);

@@ -1,4 +1,4 @@
-//! Where meshes are, and what their corners have.
+//! Places of meshes, and attributes of their corners.
 
 use super::*;
 use bilux_math::Vec2;

@@ -76,7 +76,7 @@ fn read_all(nodes: &[N]) -> SceneBuilder {
     scene
 }
 
-/// Where a point of an object is in the world.
+/// A point of an object, in world space.
 fn at(object: &Object, p: [f32; 3]) -> Vec3 {
     object.motion.at(0.0).point(Vec3::from(p))
 }

@@ -1,4 +1,4 @@
-//! What OBJ files say.
+//! Contents of OBJ files, for comparison.
 
 use bilux_math::DVec3;
 use std::path::Path;
@@ -11,7 +11,7 @@ pub(super) struct Corner {
     pub(super) uv: Option<[f64; 2]>,
 }
 
-/// What an OBJ file says.
+/// Contents of an OBJ file.
 pub(super) struct Truth {
     pub(super) corners: Vec<Corner>,
     /// The end of each face's corners.
@@ -20,7 +20,7 @@ pub(super) struct Truth {
     pub(super) ignores_normals: bool,
     pub(super) ignores_uvs: bool,
     pub(super) ignores_extra: bool,
-    /// Its program moves what bones have moved by the node once more, which the SDK's viewer does not.
+    /// True if the program that wrote it moves what bones have moved by the node once more, which the SDK's viewer does not.
     pub(super) moves_skins_again: bool,
     /// The objects that it has, if it names them; others are not compared.
     pub(super) names: Vec<String>,

@@ -1,4 +1,4 @@
-//! What slicers write beside the model: which parts are printed, with which filament, and the filaments' colours.
+//! Settings that slicers write beside the model: the parts that are printed, their filaments, and the filaments' colours.
 
 mod config;
 mod filaments;

@@ -1,4 +1,4 @@
-//! What a project says.
+//! Project of a slicer.
 
 use crate::threemf::colour::Colour;
 use std::collections::HashMap;
@@ -12,7 +12,7 @@ pub(in crate::threemf) struct Project {
     pub(in crate::threemf) objects: HashMap<u32, ObjectSettings>,
 }
 
-/// What a project says of an object.
+/// Settings of an object in a project.
 #[derive(Default)]
 pub(in crate::threemf) struct ObjectSettings {
     pub(in crate::threemf) extruder: Option<u32>,
@@ -30,11 +30,11 @@ pub(in crate::threemf) struct Volume {
     pub(in crate::threemf) settings: PartSettings,
 }
 
-/// What a project says of a part.
+/// Settings of a part in a project.
 #[derive(Clone, Copy, Default)]
 pub(in crate::threemf) struct PartSettings {
     pub(in crate::threemf) extruder: Option<u32>,
-    /// What it is, if it is not printed.
+    /// Kind of the part, if it is not printed.
     pub(in crate::threemf) unprinted: Option<&'static str>,
 }
 

@@ -21,7 +21,7 @@ const HOLDS: MaterialSupport = MaterialSupport {
 };
 
 impl Model<'_> {
-    /// What a mesh has from its material, which is written on first use.
+    /// Look of a mesh by its material, which is written on first use.
     pub(super) fn look(&mut self, material: usize, writing: &mut Writing) -> Result<Look, FormatError> {
         if let Some(known) = self.looks.get(&material) {
             return Ok(known.clone());

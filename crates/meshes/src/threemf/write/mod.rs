@@ -12,7 +12,7 @@ use bilux_import::output::writing::Writing;
 use bilux_scene::{Object, SceneBuilder, Visibility};
 use model::Model;
 
-/// What parts of the package are. [3MF Core 1.3, 2]
+/// Content types of the package's parts. [3MF Core 1.3, 2]
 const TYPES: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
     <Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">\
     <Default Extension=\"rels\" ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/>\

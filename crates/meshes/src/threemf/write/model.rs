@@ -24,13 +24,13 @@ pub(super) struct Model<'s> {
     pub(super) open: usize,
 }
 
-/// What a mesh has from its material.
+/// Look of a mesh, from its material.
 #[derive(Clone)]
 pub(super) struct Look {
     /// The group of its base material, of which there is one.
     pub(super) group: usize,
     pub(super) colour: Rgb,
-    /// Its texture, and the resource that this is.
+    /// Texture of the material, and the identifier of its resource.
     pub(super) picture: Option<(Arc<Texture>, usize)>,
 }
 

@@ -12,7 +12,7 @@ use crate::PictureError;
 use crate::limits::reserved;
 use bilux_math::parallel::{fill, for_each};
 
-/// How often edges are reconstructed.
+/// Number of times that edges are reconstructed.
 const ROUNDS: usize = 2;
 
 /// Groups of pixels that one thread rebuilds at a time.

@@ -17,8 +17,8 @@ const LIGHT_GROWTH: f32 = 1.1;
 /// Tolerances for differences in albedo and in normals.
 const ALBEDO_APART: f32 = 0.05;
 const NORMAL_APART: f32 = 0.2;
-/// How much larger the tolerance for squared differences is in fog and all else that is hazy. Its light has no edges, but few samples
-/// find it, so that most pixels are too dark and do not know it.
+/// Relative increase of the tolerance for squared differences in fog and all else that is hazy. Its light has no edges, but few
+/// samples find it, so that most pixels are too dark and do not know it.
 const HAZY: f32 = 7.0;
 /// Squared relative difference below which light counts as the same where there is no noise at all.
 const SAME: f32 = 1e-5;
@@ -55,7 +55,7 @@ struct Band<'a> {
     /// Sums of weight · light, for R, G and B, of weight² · variance, and of weights.
     sums: [Vec<f32>; 5],
     moments: Option<Moments>,
-    /// How much pixels differ in their light, with one more row and column on each side.
+    /// Differences between pixels in their light, with one more row and column on each side.
     apart: Vec<f32>,
     weights: Vec<f32>,
 }

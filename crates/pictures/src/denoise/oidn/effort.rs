@@ -1,4 +1,4 @@
-//! How much work to spend on a picture, depending on the available time.
+//! Amount of work for a picture, depending on the available time.
 
 use super::library::{Purpose, Quality};
 use std::time::Duration;
@@ -8,7 +8,7 @@ use std::time::Duration;
 pub(super) enum Effort {
     /// Denoises albedo and normals first; then uses the best network.
     Best,
-    /// The same with a network of half the size.
+    /// Denoises albedo and normals first; then uses a network of half the size.
     Balanced,
     /// The smallest network, with albedo and normals as they are.
     Least,

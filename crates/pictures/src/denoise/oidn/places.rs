@@ -1,4 +1,4 @@
-//! Where the library may be found.
+//! Places where the library may be found.
 
 use super::python;
 use std::env;

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// A device for each requested number of threads.
 static DEVICES: Mutex<Vec<(usize, Arc<Device>)>> = Mutex::new(Vec::new());
 
-/// How to get the library, for users who do not have it.
+/// Advice for users who do not have the library.
 const ADVICE: &str =
     "Open Image Denoise gives cleaner pictures: pip install pyoidn, or set OIDN_LIB to its library";
 

@@ -112,7 +112,7 @@ fn is_frame(marker: u8) -> bool {
 
 struct Segment<'b> {
     marker: u8,
-    /// What follows its length.
+    /// Bytes after the length.
     body: &'b [u8],
     /// The offset of what follows it.
     end: usize,

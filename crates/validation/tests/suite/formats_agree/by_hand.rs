@@ -9,7 +9,7 @@ use bilux_testing::verdicts::Side;
 use std::path::Path;
 use std::sync::Arc;
 
-/// What is in a file, and what a reader would take it for.
+/// Texts in a file, each with that for which a reader would take it.
 type Mistakes = &'static [(&'static str, &'static str)];
 
 /// The files, with mistakes of readers.
@@ -66,7 +66,7 @@ const FILES: &[(&str, &str, Mistakes)] = &[
     ),
 ];
 
-/// The same by our own means.
+/// The scene of the files, by our own means.
 fn scene() -> SceneBuilder {
     let text = include_bytes!("scene.toml");
     let mut scene =

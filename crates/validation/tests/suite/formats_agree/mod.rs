@@ -125,7 +125,7 @@ fn there(scene: &SceneBuilder, folder: &Path, file: &str) -> SceneBuilder {
     read(&path, &Default::default()).unwrap()
 }
 
-/// What a format holds of the scene.
+/// Part of the scene that a format holds.
 #[derive(Clone, Copy, PartialEq)]
 enum Holds {
     /// All of it but what the writer names; without the glass and the soft edge of the spotlight, nothing is lost.
@@ -134,7 +134,7 @@ enum Holds {
     Meshes,
 }
 
-/// What each extension that can be written holds.
+/// Part that each extension which can be written holds.
 const HOLDS: &[(&str, Holds)] = &[
     ("glb", Holds::AllBut(&[])),
     ("gltf", Holds::AllBut(&[])),
@@ -208,7 +208,7 @@ fn scenes_look_the_same_in_every_format() {
     assert!(p < UNLIKELY, "a light brighter by a twentieth passes: p = {p}");
 }
 
-/// What is in millimetres with z up, in metres with y up.
+/// A scene in metres with y up, from one in millimetres with z up; others stay as they are.
 fn in_metres(mut scene: SceneBuilder) -> SceneBuilder {
     if scene.unit == 0.001 {
         let turn = Transform::rotate(Vec3::X, -std::f32::consts::FRAC_PI_2).unwrap();
