@@ -48,7 +48,7 @@ pub struct Measures {
 /// Something that makes the scene hard, or is wrong with it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
-    /// The finding, with the figure that says so.
+    /// The finding, with the figure that shows it.
     pub what: String,
     /// The options that help, each as they are written after the output file of `bilux render`; may be empty.
     pub options: Vec<String>,

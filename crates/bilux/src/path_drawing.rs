@@ -89,7 +89,7 @@ fn colour(kind: VertexKind, light: Rgb) -> Rgb {
 struct Canvas {
     size: [usize; 2],
     pixels: Vec<Rgb>,
-    /// The corner of these in the whole picture, whose size is `whole`.
+    /// The corner of the canvas in the whole picture, whose size is `whole`.
     corner: Vec2,
     whole: Vec2,
     /// Pixels for each of a picture 640 pixels wide.

@@ -32,8 +32,8 @@ pub(crate) struct Eye {
 }
 
 impl Eye {
-    /// Camera of a scene with these settings, in a picture of their shape; a job knows what lights the scene. Many files say only in
-    /// which direction a camera looks: what it looks at is next to the middle of the scene.
+    /// Camera of a scene with these settings, in a picture of their shape; a job knows what lights the scene. Many files say only
+    /// in which direction a camera looks: what it looks at is next to the middle of the scene.
     pub(crate) fn at_home(job: &Job, scene: &SceneBuilder, asked: &Parameters) -> Option<Eye> {
         let settings = Settings::of(scene, asked).ok()?;
         let aspect = settings.width as f32 / settings.height as f32;

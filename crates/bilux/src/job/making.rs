@@ -29,7 +29,7 @@ impl Job {
         Job::with_built(scene, request, &mut Built::default())
     }
 
-    /// Makes the same job as [`Job::new`], with parts that earlier jobs have built of this scene or another; new parts are kept there.
+    /// Makes the same job as [`Job::new`], with parts that earlier jobs have built of this scene or another; new ones join them.
     ///
     /// # Errors
     /// As for [`Job::new`].

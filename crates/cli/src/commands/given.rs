@@ -26,7 +26,7 @@ pub struct Given<'a> {
     path: &'a Path,
     /// The bytes of standard input, which can be read only once.
     piped: Option<Vec<u8>>,
-    /// The format of these; by their beginning if it is empty.
+    /// The format of these bytes; detected from the first of them if this is empty.
     format: &'a str,
 }
 

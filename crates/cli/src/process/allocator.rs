@@ -1,4 +1,4 @@
-//! Allocator of the system: how it gives memory back, how its memory is shared among threads, and what happens where there is none.
+//! Allocator of the system: how it gives memory back, how threads share its memory, and what happens where there is none.
 //!
 //! By default, glibc keeps freed memory for later use, up to 64 MB at a time in each thread's arena, once blocks of some MB have come and gone.
 //! A large picture frees many such blocks between its stages, and none of the later ones fits into them. Blocks that have their own pages go back

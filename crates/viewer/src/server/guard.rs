@@ -1,6 +1,6 @@
 //! Access to the server.
 //!
-//! On the loopback interface every program of this machine has it, browsers included, and with them any page that they show.
+//! On the loopback interface every program of this machine has access, browsers included, and with them any page that they show.
 //! So a request must name this very server in `Host`: a page whose own name was made to point here (DNS rebinding) names
 //! another one. What connects must have the same origin as the page: browsers say the origin, and cannot be made to lie.
 //! Anywhere else the address has a random token in it, without which there is nothing to see.
