@@ -18,7 +18,7 @@ fn main() {
     }
 }
 
-/// What git answers, if it is there and this is a repository.
+/// Answer of git, if it is there and this is a repository.
 fn git(question: &[&str]) -> Option<String> {
     let output = Command::new("git").args(question).output().ok().filter(|output| output.status.success())?;
     Some(String::from_utf8(output.stdout).ok()?.trim().to_owned())

@@ -1,4 +1,4 @@
-//! What jobs have built of a scene, kept for the jobs that follow.
+//! Parts of scenes that jobs have built, kept for the jobs that follow.
 
 use bilux_scene::{BuiltParts, TreeWork};
 

@@ -17,7 +17,7 @@ pub const MAX_GROUPS: usize = 64;
 
 /// The group of what shines without being a light of the scene.
 const OTHERS: &str = "others";
-/// The same where fire and other media shine.
+/// The name of that group where fire and other media shine.
 const MEDIA: &str = "media";
 
 /// Layers besides those that rendering itself gives.
@@ -159,7 +159,7 @@ fn push_mattes(
     Ok(true)
 }
 
-/// The same for parts of the light.
+/// Adds layers of parts of the light. False if it was interrupted.
 fn push_light(
     job: &Job,
     layers: &mut Picture,
@@ -205,7 +205,7 @@ fn push_light(
 }
 
 impl Subject {
-    /// What each object and each sphere of the scene is called in a matte.
+    /// Names of each object and each sphere of the scene in a matte.
     pub(crate) fn names(&self, aov: Aov) -> Vec<String> {
         let geometry = self.scene.geometry();
         let count = geometry.objects().len() + geometry.spheres().len();

@@ -1,5 +1,5 @@
-//! What a picture says about itself: the version that made it, the fingerprint of its scene and settings, the settings
-//! that make it again, and its view. Nothing that differs from one run to the next: no date, no time, no threads.
+//! Metadata of a picture: the version that made it, the fingerprint of its scene and settings, the settings that make it again,
+//! and its view. Nothing that differs from one run to the next: no date, no time, no threads.
 
 pub use crate::metadata::{FINGERPRINT, SETTINGS, SOFTWARE, is_handed_on};
 use crate::settings::{RENDER, Settings};

@@ -1,4 +1,4 @@
-//! How the finished picture is prepared for a display, kept in the metadata of its parts: merged, they give the file that
+//! Settings that prepare the finished picture for a display, kept in the metadata of its parts: merged, they give the file that
 //! one render gives.
 
 use crate::Error;
@@ -12,7 +12,7 @@ const TONE_MAP: &str = "bilux.display.tonemap";
 const BEHIND: &str = "bilux.display.background";
 const ENCODED: &str = "bilux.display.encoded";
 
-/// How a picture is prepared for a display.
+/// Settings that prepare a picture for a display.
 #[derive(Clone, Copy, Debug)]
 pub struct Display {
     /// Exposure in stops.
@@ -47,7 +47,7 @@ impl Display {
         note(ENCODED, self.encoded.to_string());
     }
 
-    /// What [`Display::record`] has kept; without it, what is usual.
+    /// Settings that [`Display::record`] has kept; without them, the usual ones.
     ///
     /// # Errors
     /// If a value makes no sense.

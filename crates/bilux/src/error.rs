@@ -1,4 +1,4 @@
-//! What can go wrong in any part of Bilux.
+//! Errors of all parts of Bilux.
 
 use crate::encoding::EncodingError;
 use crate::memory::Memory;
@@ -61,7 +61,7 @@ pub enum CheckpointError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What was attempted.
+        /// The step that failed.
         action: &'static str,
         /// Why it failed.
         source: io::Error,
@@ -71,7 +71,7 @@ pub enum CheckpointError {
     Damaged {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The fault.
         what: String,
     },
     /// The checkpoint belongs to another picture.
@@ -82,7 +82,7 @@ pub enum CheckpointError {
     OtherPicture {
         /// The file.
         path: PathBuf,
-        /// What is different.
+        /// The properties that differ.
         differences: Vec<String>,
     },
     /// The file is too large to be read.
@@ -90,7 +90,7 @@ pub enum CheckpointError {
     TooLarge {
         /// The file.
         path: PathBuf,
-        /// Its size.
+        /// The size of the file in bytes.
         size: u64,
         /// The maximum.
         most: u64,
@@ -125,7 +125,7 @@ impl Error {
     }
 }
 
-/// What to make smaller: whatever takes the most memory.
+/// Advice on what to make smaller: whatever takes the most memory.
 fn smaller(needed: &Memory) -> &'static str {
     let Memory { meshes, textures, levels, grids, trees, picture } = *needed;
     if picture >= (meshes + trees).max(textures + levels).max(grids) {

@@ -20,7 +20,7 @@ const MANY_LIGHTS: usize = 16;
 /// A texture of more texels than this on a side is huge.
 const HUGE_TEXTURE: usize = 4096;
 
-/// What was measured. Fractions are 0..=1.
+/// Measurements of a scene. Fractions are 0..=1.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measures {
     /// The fraction of the film that shows surfaces.
@@ -33,7 +33,7 @@ pub struct Measures {
     pub open: Option<f32>,
     /// The number of lights that emit anything.
     pub lights: usize,
-    /// Those of them that no ray can hit: points, spots and directions.
+    /// The number of these that no ray can hit: points, spots and directions.
     pub points: usize,
     /// True if light comes from infinity.
     pub has_surroundings: bool,
@@ -48,22 +48,22 @@ pub struct Measures {
 /// Something that makes the scene hard, or is wrong with it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
-    /// What it is, with the figure that says so.
+    /// The finding, with the figure that shows it.
     pub what: String,
     /// The options that help, each as they are written after the output file of `bilux render`; may be empty.
     pub options: Vec<String>,
-    /// What else to do, if anything.
+    /// Further advice, if any.
     pub advice: Option<&'static str>,
 }
 
 /// All that is known of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Explanation {
-    /// What `auto` chose, and its rivals; `None` if the integrator is another one.
+    /// The set of techniques that `auto` chose, and its rivals; `None` if the integrator is another one.
     pub choice: Option<Choice>,
-    /// What was measured.
+    /// The measurements.
     pub measures: Measures,
-    /// What follows from it.
+    /// The findings that follow from the choice and the measurements.
     pub findings: Vec<Finding>,
 }
 
@@ -253,7 +253,7 @@ fn findings(m: &Measures, choice: Option<&Choice>) -> Vec<Finding> {
     found
 }
 
-/// How many times as long a candidate takes as another, to the same noise; 1 where there is no light to compare.
+/// Time that a candidate takes, as a multiple of another's, to the same noise; 1 where there is no light to compare.
 pub fn slower(candidate: &Candidate, than: &Candidate) -> f64 {
     let factor = candidate.time_to_error() / than.time_to_error();
     if factor.is_finite() { factor } else { 1.0 }

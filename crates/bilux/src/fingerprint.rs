@@ -1,4 +1,4 @@
-//! What identifies a picture before it is rendered: partial films merge only if their fingerprints agree.
+//! Fingerprint of a picture, known before it is rendered: partial films merge only if their fingerprints agree.
 
 use crate::encoding::hash_what_is_seen;
 use crate::settings::Settings;

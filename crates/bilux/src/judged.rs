@@ -1,4 +1,4 @@
-//! What was found of a scene's own light, and what it means for the exposure.
+//! Judgement of a scene's own light, and what it means for the exposure.
 
 use bilux_math::transcendental::{log2, powf};
 use bilux_transport::Illumination;
@@ -7,12 +7,12 @@ use bilux_transport::Illumination;
 const SOME: f32 = 0.05;
 /// The outgoing radiance of a white surface that a display shows well, and by how many stops that may be missed.
 const SURFACE: [f32; 2] = [0.5, 1.5];
-/// The same for what emits light, where nothing else is visible.
+/// Radiance of an emitter that a display shows well, and by how many stops that may be missed, where nothing else is visible.
 const EMITTER: [f32; 2] = [1.0, 3.0];
 /// Exposures are multiples of this many stops.
 const STEP: f32 = 0.25;
 
-/// What was found of a scene's own light.
+/// Judgement of a scene's own light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Judged {
     /// Whether it lights what is visible; `None` if the file describes its surroundings, so that nothing is to be decided.
@@ -40,7 +40,7 @@ impl Judged {
         if is_usual { 0.0 } else { (stops / STEP).round() * STEP }
     }
 
-    /// How many times brighter than usual the scene is.
+    /// Brightness of the scene, as a multiple of the usual one.
     pub(crate) fn brightness(&self) -> f32 {
         powf(2.0, -self.exposure())
     }

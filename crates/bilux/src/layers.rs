@@ -1,4 +1,4 @@
-//! What is derived from a render besides its light: layers, and the denoised picture.
+//! Products of a render besides its light: layers, and the denoised picture.
 
 use crate::{Error, Outcome, labels};
 use bilux_math::Rgb;

@@ -78,7 +78,7 @@ pub use writing::{lost_alpha, lost_transparency};
 use bilux_scene::{SceneBuilder, Spec};
 use std::path::Path;
 
-/// What most programs need.
+/// Names that most programs need.
 pub mod prelude {
     pub use crate::{Denoised, Error, Job, JobRequest, Outcome, Quiet, Settings};
     pub use bilux_math::{Rgb, Transform, Vec2, Vec3};

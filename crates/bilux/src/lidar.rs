@@ -36,8 +36,8 @@ pub fn scanner(parameters: &Parameters) -> Result<Scanner, Error> {
     })
 }
 
-/// What a scanner measures of a scene as it is: nothing is added to it. Each pulse meets moving objects where they are at its time. What
-/// is built is kept for later scans and renders.
+/// Returns of the pulses of a scanner in a scene as it is: nothing is added to it. Each pulse meets moving objects where they are
+/// at its time. What is built is kept for later scans and renders.
 ///
 /// # Errors
 /// If anything in the scene is wrong.

@@ -5,14 +5,14 @@ use crate::{Error, Job};
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_transport::{Event, PathVertex, Replay, VertexKind};
 
-/// How many places of a segment are tried to find the part of it that the camera sees.
+/// Number of steps in which a segment is searched for the part of it that the camera sees.
 const STEPS: u32 = 48;
 
 /// A replayed sample with its path on the film. Places on the film are fractions of its width and height.
 pub struct LightPath {
-    /// What happened.
+    /// The recorded sample.
     pub replay: Replay,
-    /// Where each event's vertex is on the film; `None` for what is no vertex, infinitely far away or out of view.
+    /// The place of each event's vertex on the film; `None` for what is no vertex, infinitely far away or out of view.
     pub places: Vec<Option<[f32; 2]>>,
     /// The parts of the path that the camera sees, each from one vertex to the next.
     pub segments: Vec<PathSegment>,
@@ -24,16 +24,16 @@ pub struct PathSegment {
     pub kind: VertexKind,
     /// Scattering events before that.
     pub depth: u32,
-    /// Its ends on the film.
+    /// The ends of the part on the film.
     pub ends: [[f32; 2]; 2],
-    /// What its end adds to the light of the sample.
+    /// The light that its end adds to the sample.
     pub light: Rgb,
-    /// It begins at the lens, so the camera sees it end on.
+    /// True if it begins at the lens, so that the camera sees it end on.
     pub from_camera: bool,
 }
 
 impl LightPath {
-    /// That of one sample of a pixel, as the camera sees it.
+    /// Path of one sample of a pixel, as the camera sees it.
     ///
     /// # Errors
     /// If the pixel is outside the picture.
@@ -50,7 +50,7 @@ impl LightPath {
     }
 }
 
-/// What the camera sees at a time.
+/// View of a job's camera at a time.
 struct View<'a> {
     subject: &'a Subject,
     time: f32,
@@ -88,7 +88,7 @@ impl View<'_> {
         segments
     }
 
-    /// Where a segment to a vertex ends.
+    /// End of a segment to a vertex.
     fn end(&self, vertex: &PathVertex, from: Vec3) -> Vec3 {
         match is_direction(vertex.kind) {
             true => from + vertex.at * (4.0 * self.subject.scene.bounds().radius()),
@@ -116,7 +116,7 @@ impl View<'_> {
         Some([at(limit(first, (first - step).max(0.0)))?, at(limit(last, (last + step).min(1.0)))?])
     }
 
-    /// Where a point is on the film.
+    /// Place of a point on the film, if it is visible there.
     fn on_film(&self, p: Vec3) -> Option<[f32; 2]> {
         let seen = self.subject.camera.connect(p, Vec2::ZERO, self.time)?;
         seen.is_on_film().then(|| seen.film.to_array())

@@ -1,4 +1,4 @@
-//! How much memory a picture will take, so that Bilux refuses to start one that does not fit.
+//! Memory that a picture will take, so that Bilux refuses to start one that does not fit.
 
 use bilux_scene::{Mesh, SceneBuilder};
 use std::collections::HashSet;

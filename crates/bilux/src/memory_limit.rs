@@ -1,5 +1,5 @@
-//! How much memory the system lets this process use: less than the machine has, where a control group (of a container, a
-//! service or a job) or `ulimit` says so. Whoever takes more is killed without a word, or gets none.
+//! Memory that the system lets this process use: less than the machine has, where a control group (of a container, a service or
+//! a job) or `ulimit` says so. A process that takes more is killed without a word, or gets none.
 
 use bilux_scene::{Parameters, Value};
 use std::fmt;
@@ -15,7 +15,7 @@ const RESERVE: u64 = 12 << 20;
 /// Not even a small scene can be read with less; whether there is so much, allocations show.
 const LEAST: u64 = 1 << 20;
 
-/// What limits the memory of a process.
+/// Source of a limit of the memory of a process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitSource {
     /// The control group that the process is in, or one that contains it: `memory.max`, or `memory.limit_in_bytes` in the
@@ -43,7 +43,7 @@ impl fmt::Display for LimitSource {
 /// The tightest limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MemoryLimit {
-    /// What sets it.
+    /// The source.
     pub source: LimitSource,
     /// The limit in bytes.
     pub limit: u64,
@@ -57,7 +57,7 @@ impl MemoryLimit {
         MemoryLimit::within(Path::new("/"))
     }
 
-    /// The same with the system's files in another folder.
+    /// Finds the tightest limit, with the system's files in another folder.
     fn within(root: &Path) -> Option<MemoryLimit> {
         let all = [of_groups(root), of_process(root), of_machine(root)];
         all.into_iter().flatten().min_by_key(|limit| limit.left)
@@ -93,7 +93,7 @@ fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// Where control groups are, by the form of their files: their limit, what is in use, and the names under which they count
+/// Names of control groups in one form: their folder, the files of their limit and of what is in use, and the fields that count
 /// the files in memory, which the system drops first.
 struct Hierarchy {
     folder: &'static str,

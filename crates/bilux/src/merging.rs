@@ -56,8 +56,8 @@ impl Merging {
         }
     }
 
-    /// What the parts lack of the picture: samples between theirs, and those up to the number that was asked for, for
-    /// every pixel.
+    /// Samples that the parts lack of the picture: those between theirs, and those up to the number that was asked for, for every
+    /// pixel.
     pub fn missing(&self) -> Missing {
         let Some((film, _)) = &self.joined else { return Missing::default() };
         let whole = Window::whole(film.width(), film.height());

@@ -7,12 +7,12 @@ pub const FINGERPRINT: &str = "bilux.fingerprint";
 /// The options of the command line that make the picture again.
 pub const SETTINGS: &str = "bilux.settings";
 
-/// What the pixels measure, if it is not what an eye sees.
+/// The quantity that the pixels measure, if it is not what an eye sees.
 pub const MEASURES: &str = "bilux.measures";
 /// The value of [`MEASURES`] where they are the light that a surface receives, over π.
 pub const IRRADIANCE: &str = "irradiance over pi";
 
-/// How wide a pixel is over its height, unless that is 1.
+/// The width of a pixel over its height, unless that is 1.
 pub const PIXEL_SHAPE: &str = "pixelAspectRatio";
 
 /// In the metadata of a partial render: the samples per pixel of the picture that it is a part of.

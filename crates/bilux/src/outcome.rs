@@ -4,7 +4,7 @@ use crate::Error;
 use bilux_pictures::Picture;
 use bilux_transport::{Features, Reached, Rendered};
 
-/// What is known of the visible surfaces, as far as it was asked for ([`layers`](crate::JobRequest::layers)).
+/// Features and labels of the visible surfaces, as far as asked for ([`layers`](crate::JobRequest::layers)).
 #[derive(Clone, Default)]
 pub struct Surfaces {
     /// Means over samples.
@@ -13,12 +13,12 @@ pub struct Surfaces {
     pub labels: Option<Picture>,
 }
 
-/// What was rendered, with whatever else the picture needs.
+/// Outcome of a render, with whatever else the picture needs.
 #[derive(Clone)]
 pub struct Outcome {
-    /// What was rendered: the film, the work that it took, how far it got.
+    /// The render: the film, the work that it took, how far it got.
     pub rendered: Rendered,
-    /// What is known of the visible surfaces.
+    /// Features and labels of the visible surfaces.
     pub surfaces: Surfaces,
     /// The alpha of each pixel, in rows of the film's window, if the picture has an alpha channel.
     pub coverage: Option<Vec<f32>>,

@@ -1,5 +1,5 @@
-//! What a scene's own light means for its picture, decided by how much of what the camera sees it reaches, and how brightly:
-//! whether the studio lights it, and how it is exposed.
+//! Consequences of a scene's own light for its picture: whether the studio lights it, and how it is exposed. They depend on how
+//! much of what the camera sees is lit by it, and how brightly.
 
 use crate::Error;
 use crate::camera_choice::choose_camera;
@@ -77,14 +77,14 @@ fn reached(measured: &Illumination) -> f32 {
     if measured.surfaces > 0.0 { measured.lit } else { 0.0 }
 }
 
-/// What the studio has added to light a scene, where nothing else is to be told about its light.
+/// Lights that the studio has added to a scene, in words, where nothing else is to be told about its light.
 pub(crate) fn studio_light(settings: &Settings, completed: &SceneBuilder, count: usize) -> Option<String> {
     let is_said = settings.own_light.is_some_and(|judged| judged.is_said);
     added_lights(completed, count).filter(|_| !is_said)
 }
 
-/// What is worth telling about the light of a completed scene, in one line: what the studio has added, and how the picture is
-/// exposed. `count` is the number of lights that the scene had before.
+/// Note about the light of a completed scene, in one line: what the studio has added, and how the picture is exposed. `count` is
+/// the number of lights that the scene had before.
 pub(crate) fn note(settings: &Settings, completed: &SceneBuilder, count: usize) -> Option<String> {
     let judged = settings.own_light.as_ref();
     let exposes = settings.is_exposed_by_own_light();

@@ -29,7 +29,7 @@ use std::time::Instant;
 
 /// A part of a picture.
 pub struct PartOutcome {
-    /// Its samples, with the fingerprint of the picture.
+    /// The film of its samples, with the fingerprint of the picture.
     pub film: Film,
     /// The rays that they took.
     pub rays: u64,

@@ -62,7 +62,7 @@ fn half_width(segment: &PathSegment, most: f32) -> f32 {
     if share > 0.0 { THIN + WIDEST * share.sqrt() } else { THIN }
 }
 
-/// How opaque a segment is: what brings light by how much, and everything else by how early it comes.
+/// Opacity of a segment: by the light that it brings or, if it brings none, by how early it comes.
 fn strength(segment: &PathSegment, most: f32) -> f32 {
     let share = (segment.light.luminance() / most).max(0.0);
     match share > 0.0 {
@@ -85,11 +85,11 @@ fn colour(kind: VertexKind, light: Rgb) -> Rgb {
     Rgb::from_array(bytes.map(|byte| f32::from(byte) / 255.0))
 }
 
-/// What is drawn on, in sRGB.
+/// Pixels that are drawn on, in sRGB.
 struct Canvas {
     size: [usize; 2],
     pixels: Vec<Rgb>,
-    /// Where it begins in the whole picture, whose size is `whole`.
+    /// The corner of the canvas in the whole picture, whose size is `whole`.
     corner: Vec2,
     whole: Vec2,
     /// Pixels for each of a picture 640 pixels wide.

@@ -1,4 +1,4 @@
-//! How bare files are shown: presets that the user asks for, and the studio for files without a camera or lights.
+//! Presets that the user asks for, and the studio for files without a camera or lights: how bare files are shown.
 
 use crate::Error;
 use bilux_formats::{FormatError, ReadOptions};
@@ -140,7 +140,7 @@ fn stand_relative_to(other: &Parameters, own: &mut Parameters) {
     }
 }
 
-/// What is wrong with the image itself: an error's position in the generated text below would mean nothing to the user.
+/// Fault of the image itself: an error's position in the generated text below would mean nothing to the user.
 fn picture_fault(picture: &Path, options: &ReadOptions) -> Option<Error> {
     let limits = Limits::new(options.max_memory);
     let read = bilux_pictures::read_with(picture, &limits);

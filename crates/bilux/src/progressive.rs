@@ -13,11 +13,11 @@ pub struct Progressive {
     pub(crate) job: Job,
     pub(crate) so_far: Option<Outcome>,
     done: u32,
-    /// How long a sample of all pixels took, last time.
+    /// The time that a sample of all pixels took, last time.
     each: Option<Duration>,
 }
 
-/// How long a step may take.
+/// Budget of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Budget {
     /// So many samples of each pixel.

@@ -20,7 +20,7 @@ pub struct Sensing {
 pub struct Sensed {
     /// Digital numbers, or light in the unit of the picture that was read.
     pub picture: Picture,
-    /// How many pixels have the largest number, in all planes.
+    /// The number of pixels that have the largest number, in all planes.
     pub saturated: u64,
 }
 
@@ -63,7 +63,7 @@ impl Sensing {
         Ok(Sensing { sensor, is_raw: reader.text("output") == "raw" })
     }
 
-    /// What the sensor makes of a picture's light.
+    /// Picture that the sensor makes of a picture's light.
     ///
     /// # Errors
     /// As [`Sensor::read`].

@@ -1,4 +1,4 @@
-//! What the pictures of a turntable or of an animation have in common. If it changed from one to the next, they would
+//! Series of pictures, a turntable or an animation: what they have in common. If it changed from one to the next, they would
 //! flicker.
 
 use crate::judged::Judged;
@@ -10,12 +10,12 @@ use bilux_scene::{BuiltParts, SceneBuilder};
 /// The maximum number of views in which a turntable's own light is measured.
 const MAX_VIEWS: u32 = 8;
 
-/// What the pictures of a series have in common; for a single picture, nothing.
+/// Properties that the pictures of a series have in common; a single picture has none.
 #[derive(Clone, Debug, Default)]
 pub struct Series {
     /// The part of a full turn by which the camera has moved around a model that is framed for the whole turn.
     pub(crate) turn: Option<f32>,
-    /// What was found of the scene's own light, in the first picture or in all views.
+    /// The judgement of the scene's own light, in the first picture or in all views.
     pub(crate) own_light: Option<Judged>,
 }
 

@@ -5,13 +5,13 @@ use bilux_math::registry::{Entry, ParameterKind};
 /// One table.
 #[derive(Clone, Copy, Debug)]
 pub struct Table {
-    /// Its name, in the plural.
+    /// The name of the table, in the plural.
     pub name: &'static str,
-    /// What it lists.
+    /// The kind of things that it lists.
     pub summary: &'static str,
-    /// Its rows.
+    /// The rows.
     pub rows: fn() -> Vec<Entry>,
-    /// What else there is to say of the row with a name: a heading and words, several times.
+    /// Further details of the row with a name: a heading and words, several times.
     pub details: fn(&str) -> Vec<Detail>,
 }
 

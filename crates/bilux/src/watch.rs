@@ -31,8 +31,8 @@ impl Watched {
     }
 }
 
-/// What has changed in files that are looked at from time to time. A file that is being written changes more than once: a
-/// change counts when all files have stayed the same from one look to the next.
+/// Changes in files that are looked at from time to time. A file that is being written changes more than once: a change counts
+/// when all files have stayed the same from one look to the next.
 #[derive(Debug)]
 pub struct Changes<'a> {
     files: &'a Watched,

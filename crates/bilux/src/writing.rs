@@ -1,4 +1,4 @@
-//! What matters when pictures are written: their exposure, and what formats lose.
+//! Exposure of written pictures, and what formats lose.
 
 use crate::Error;
 use crate::settings::Settings;
@@ -16,7 +16,7 @@ pub fn lost_alpha(picture: &Picture, path: &Path, behind: Option<Rgb>) -> Result
     lost_transparency(is_transparent, path, behind)
 }
 
-/// The same of any picture, by whether it is transparent.
+/// Warning of [`lost_alpha`] for any picture, by whether it is transparent.
 ///
 /// # Errors
 /// If no picture is written in a format of this name.

@@ -1,4 +1,4 @@
-//! What the page offers, from the same tables as the command line: names, help, units, ranges.
+//! Catalogue of what the page offers, from the same tables as the command line: names, help, units, ranges.
 
 use bilux::accel::ACCELERATORS;
 use bilux::math::registry::{Entry, Parameter, ParameterKind};
@@ -47,7 +47,7 @@ pub(crate) fn catalogue() -> Value {
     })
 }
 
-/// What can be shown in the place of the picture.
+/// Layers and maps that can be shown in the place of the picture.
 fn layers() -> Vec<Value> {
     let features =
         AOVS.iter().filter(|row| LAYERS.contains(&row.aov)).map(|row| (row.entry.name, row.entry.summary));

@@ -1,4 +1,4 @@
-//! What all views share: the scene, the turns, the room, and what the viewer was started with.
+//! State that all views share: the scene, the turns, the room, and what the viewer was started with.
 
 use crate::open_scene::OpenScene;
 use crate::options::Options;
@@ -14,7 +14,7 @@ const PIXEL: u64 = 400;
 /// with what else stands still.
 const TRIANGLE: u64 = 40;
 
-/// What all views share.
+/// State that all views share.
 pub(crate) struct Common {
     /// The settings that the viewer was started with.
     pub(crate) settings: Parameters,
@@ -31,7 +31,7 @@ pub(crate) struct Common {
 }
 
 impl Common {
-    /// What views share that are started with these options.
+    /// State of the views that are started with these options.
     pub(crate) fn new(options: &Options, open: Arc<OpenScene>) -> Common {
         Common {
             settings: options.settings.clone(),

@@ -17,12 +17,12 @@ const LONGEST_NAME: usize = 100;
 #[derive(Debug)]
 pub(crate) struct Kept {
     folder: TempDir,
-    /// Its name.
+    /// The name of the file.
     pub(crate) name: String,
 }
 
 impl Kept {
-    /// Where it lies.
+    /// Path of the file.
     pub(crate) fn path(&self) -> PathBuf {
         self.folder.path().join(&self.name)
     }
@@ -32,7 +32,7 @@ impl Kept {
 pub(crate) struct Dropped {
     /// The file.
     pub(crate) file: Kept,
-    /// Where it is said whether that worked.
+    /// The channel on which it is said whether that worked.
     pub(crate) to: oneshot::Sender<Result<(), String>>,
 }
 

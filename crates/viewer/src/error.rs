@@ -1,4 +1,4 @@
-//! What can go wrong with a viewer.
+//! Errors of a viewer.
 
 use std::io;
 use std::net::SocketAddr;
@@ -18,7 +18,7 @@ pub enum ViewerError {
     Listen {
         /// The address.
         address: SocketAddr,
-        /// What the system says.
+        /// The error of the system.
         source: io::Error,
     },
     /// The scene cannot be opened.

@@ -17,7 +17,7 @@ const DISTANCES: [f64; 2] = [1e-4, 1e3];
 /// A camera's position, and the point that it moves around.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Eye {
-    /// Its position.
+    /// The position of the camera.
     pub(crate) position: DVec3,
     /// The point that it looks at, and moves around.
     pub(crate) pivot: DVec3,
@@ -32,8 +32,8 @@ pub(crate) struct Eye {
 }
 
 impl Eye {
-    /// Where a scene has its camera, with these settings, in a picture of their shape; a job knows what lights the scene.
-    /// Many files say only in which direction a camera looks: what it looks at is next to the middle of the scene.
+    /// Camera of a scene with these settings, in a picture of their shape; a job knows what lights the scene. Many files say only
+    /// in which direction a camera looks: what it looks at is next to the middle of the scene.
     pub(crate) fn at_home(job: &Job, scene: &SceneBuilder, asked: &Parameters) -> Option<Eye> {
         let settings = Settings::of(scene, asked).ok()?;
         let aspect = settings.width as f32 / settings.height as f32;
@@ -204,7 +204,7 @@ mod tests {
         Eye { position, pivot: DVec3::Y, zoom: 1.0, up: DVec3::Y, is_parallel: false, radius: 2.0 }
     }
 
-    /// Where a camera moves, the eye is at home where that is at the moment of the picture.
+    /// The eye is at home where a moving camera is at the moment of the picture.
     #[test]
     fn at_home_a_moving_camera_is_where_it_is_then() {
         let at = |x: f32| bilux::scene::Spec::new("", "perspective").with("position", Vec3::new(x, 1.0, 5.0));

@@ -10,13 +10,13 @@ const QUALITY: u8 = 82;
 
 /// A picture as it is sent.
 pub(crate) struct Frame {
-    /// Its number; later frames have higher numbers.
+    /// The number of the frame; later frames have higher numbers.
     pub(crate) number: u64,
     /// The length of the header in four bytes, the lowest first; the header, in JSON; and the bytes of the picture.
     pub(crate) message: axum::body::Bytes,
 }
 
-/// What is known of a frame.
+/// Facts about a frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Facts {
     /// Which of two pictures it is: `own`, or the `other` one that it is compared with.
@@ -37,22 +37,22 @@ pub(crate) struct Facts {
     pub(crate) noise: Option<f32>,
     /// Whether it is one of the small, quick pictures that are shown while the camera moves.
     pub(crate) is_preview: bool,
-    /// What is shown: `picture`, or a layer of it.
+    /// The name of what is shown: `picture`, or a layer of it.
     pub(crate) shown: &'static str,
     /// Whether the picture rests: it is stored without loss.
     pub(crate) rests: bool,
-    /// What the integrator has chosen, if it chooses.
+    /// The choice of the integrator, if it chooses.
     pub(crate) choice: Option<String>,
-    /// How far two pictures that are compared are from each other, relative to their light.
+    /// The distance of two pictures that are compared, relative to their light.
     pub(crate) difference: Option<f64>,
-    /// Where the camera is: position, then the point that it looks at.
+    /// The camera: its position, then the point that it looks at.
     pub(crate) eye: [[f64; 3]; 2],
-    /// Its magnification, if it was moved; nothing where the scene has it.
+    /// The magnification of the camera, if it was moved; nothing where the scene has it.
     pub(crate) zoom: Option<f64>,
 }
 
 impl Facts {
-    /// The same facts of a picture of this size with so many samples and rays, which took this time.
+    /// Adds the samples, the time and the rates of a picture of this size: so many samples and rays, which took this time.
     pub(crate) fn of(mut self, [width, height]: [u32; 2], samples: u32, rays: u64, time: Duration) -> Facts {
         let seconds = time.as_secs_f64();
         let pixels = f64::from(width) * f64::from(height);

@@ -1,4 +1,4 @@
-//! What those who watch ask for, until the render takes it. However much they ask for, it takes a bounded amount of
+//! Requests of those who watch, kept until the render takes them. However many there are, they take a bounded amount of
 //! memory: moves add up, a later value of a setting replaces an earlier one, and questions that are too many are refused.
 
 use crate::message::{Move, Other, Question, Request};
@@ -12,7 +12,7 @@ pub(crate) const QUESTIONS: usize = 64;
 /// The maximum number of different moves or settings that wait.
 const MOVES: usize = 64;
 
-/// What waits to be taken.
+/// Requests that wait to be taken.
 #[derive(Default)]
 pub(crate) struct Waiting {
     /// Moves of the camera, in order; consecutive ones of a kind are added up.
@@ -21,9 +21,9 @@ pub(crate) struct Waiting {
     pub(crate) size: Option<[u32; 2]>,
     /// Settings.
     pub(crate) settings: Parameters,
-    /// What is shown: the picture, or one of its layers.
+    /// The name of what is shown: the picture, or one of its layers.
     pub(crate) shown: Option<String>,
-    /// What the picture is compared with; nothing if inside there is nothing.
+    /// The picture to compare with; `Some(None)` ends the comparison.
     pub(crate) compared: Option<Option<Other>>,
     /// Whether differences are shown.
     pub(crate) differences: Option<bool>,
@@ -113,7 +113,7 @@ impl Inbox {
         Ok(())
     }
 
-    /// What waits. Waits for something, up to this time; if none is given, until there is something.
+    /// Takes what waits, as soon as there is something, or after this time; if none is given, as soon as there is something.
     pub(crate) fn take(&self, wait: Option<Duration>) -> Waiting {
         let mut waiting = self.lock();
         let is_idle = |_: &mut Waiting| !self.rings.load(Ordering::Relaxed);

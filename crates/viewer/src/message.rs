@@ -1,4 +1,4 @@
-//! What a browser says, in JSON: each message is an object whose `do` names what is asked for.
+//! Messages of a browser, in JSON: each is an object whose `do` names what is asked for.
 
 use crate::dropped::Dropped;
 use bilux::scene::{Part, Value};
@@ -14,7 +14,7 @@ const SIDES: [u32; 2] = [16, 4096];
 /// The maximum number of pixels.
 const PIXELS: f64 = 3840.0 * 2160.0;
 
-/// Where answers go to.
+/// Channel for answers.
 pub(crate) type Answers = mpsc::Sender<String>;
 
 /// A message.
@@ -45,7 +45,7 @@ pub(crate) enum Request {
     Ask(Question),
     /// There is another version of the scene.
     SceneChanged,
-    /// What was asked of the scene is done, or cannot be done for this reason.
+    /// The request to the scene is done, or cannot be done for this reason.
     Answered(Option<String>),
 }
 
@@ -53,13 +53,13 @@ pub(crate) enum Request {
 pub(crate) enum SceneRequest {
     /// Change a parameter of a material, a light or a camera.
     Edit {
-        /// What is changed.
+        /// The kind of the part that is changed.
         part: Part,
-        /// Its number.
+        /// The number of the part.
         number: usize,
         /// The parameter.
         key: String,
-        /// Its value.
+        /// The new value.
         value: Value,
     },
     /// Undo the last edit.
@@ -98,10 +98,10 @@ impl SceneRequest {
     }
 }
 
-/// What the picture is compared with.
+/// Picture to compare with.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Other {
-    /// The same with another setting.
+    /// The picture with another setting.
     Setting(String, Value),
     /// The scene before it was edited.
     Unedited,
@@ -109,31 +109,31 @@ pub(crate) enum Other {
 
 /// A question about the picture, and where its answer goes.
 pub(crate) enum Question {
-    /// What is at a place of the picture, given as fractions of its width and height, and how does light get there along
-    /// this many paths?
+    /// The surface at a place of the picture, given as fractions of its width and height, and the light that gets there along this
+    /// many paths.
     Pick {
         /// The place.
         at: [f32; 2],
         /// The number of paths.
         paths: u32,
-        /// Where the answer goes.
+        /// The channel for the answer.
         answers: Answers,
     },
     /// The picture as a file of this format.
     Save {
         /// The format's name.
         format: &'static str,
-        /// Where the bytes go, or what went wrong.
+        /// The channel for the bytes, or for what went wrong.
         to: oneshot::Sender<Result<Vec<u8>, String>>,
     },
     /// The scene as it was edited, as an overlay of its file.
     Overlay {
-        /// Where it goes.
+        /// The channel for the overlay.
         to: oneshot::Sender<String>,
     },
-    /// How fast is each accelerator?
+    /// The speed of each accelerator.
     Measure {
-        /// Where the answers go, one for each accelerator.
+        /// The channel for the answers, one for each accelerator.
         answers: Answers,
     },
 }
@@ -237,7 +237,7 @@ pub(crate) fn parse(text: &str, answers: &Answers) -> Result<Message, String> {
     }
 }
 
-/// What is compared: another value of a setting, the scene without edits, or nothing.
+/// Picture to compare with: by another value of a setting, of the scene without edits, or none.
 fn other(json: &Json) -> Result<Option<Other>, String> {
     match json["with"].as_str() {
         Some("setting") => Ok(Some(Other::Setting(text_of(json, "key")?, value(&json["value"])?))),
@@ -280,7 +280,7 @@ fn text_of(json: &Json, key: &str) -> Result<String, String> {
     text.map(str::to_owned).ok_or_else(|| format!("'{key}' needs a text of 1 to 256 bytes"))
 }
 
-/// What is chosen by its name; an empty name stands for what was chosen at the start.
+/// Choice by its name; an empty name stands for what was chosen at the start.
 fn choice(json: &Json) -> Result<String, String> {
     let name = json["name"].as_str().filter(|name| name.len() <= 256);
     name.map(str::to_owned).ok_or_else(|| "'name' needs a text of up to 256 bytes".to_owned())

@@ -1,4 +1,4 @@
-//! What a viewer is started with.
+//! Options that a viewer is started with.
 
 use bilux::scene::{Parameters, SceneBuilder};
 use std::net::SocketAddr;
@@ -7,7 +7,7 @@ use std::path::PathBuf;
 /// Opens a scene, again whenever its files have changed. The error is a message for people.
 pub(crate) type Open = Box<dyn Fn(&Opening) -> Result<SceneBuilder, String> + Send>;
 
-/// What is opened, and how.
+/// Choices with which a scene is opened.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Opening {
     /// A file in the place of the scene that the viewer was started with.
@@ -16,7 +16,7 @@ pub struct Opening {
     pub variant: Option<String>,
     /// The animation that it plays, by name or by number, if another one than at the start.
     pub animation: Option<String>,
-    /// What lights it from all around, one of [`Options::environments`], if another one than at the start.
+    /// The environment that lights it, one of [`Options::environments`], if another one than at the start.
     pub environment: Option<String>,
     /// The time in seconds at which it is posed, if another one than at the start.
     pub time: Option<f32>,
@@ -25,12 +25,12 @@ pub struct Opening {
 /// The choice that stands for what was chosen at the start.
 pub(crate) const AS_OPENED: &str = "";
 
-/// What a viewer shows, to whom.
+/// Options of a viewer: what it shows, to whom.
 pub struct Options {
-    /// Where it listens; port 0 is any that is free. Anywhere but on the loopback interface, the address that it prints
-    /// has a random token in it, without which nothing is served.
+    /// The address on which it listens; port 0 is any that is free. Anywhere but on the loopback interface, the address that it
+    /// prints has a random token in it, without which nothing is served.
     pub address: SocketAddr,
-    /// What the page is titled: the name of the scene's file.
+    /// The title of the page: the name of the scene's file.
     pub title: String,
     /// Whether all see the same view, instead of each their own.
     pub shared: bool,
@@ -38,7 +38,7 @@ pub struct Options {
     pub visitors: usize,
     /// Whether no library may be loaded any more.
     pub sandboxed: bool,
-    /// What may light the scene from all around, by the words of the option `--env`.
+    /// The environments that may light the scene from all around, by the words of the option `--env`.
     pub environments: Vec<String>,
     /// Whether those who watch may change materials, lights and cameras, and drop files in.
     pub may_edit: bool,

@@ -7,7 +7,7 @@ use bilux::{JobRequest, Settings};
 /// The maximum number of samples of each pixel, if neither the user nor the scene says it.
 const SAMPLES: i64 = 1024;
 
-/// What is being rendered.
+/// Level of refinement that is being rendered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Level {
     /// A picture whose sides are divided by this, as soon as possible.
@@ -28,7 +28,7 @@ impl Level {
     }
 }
 
-/// What a viewer sets unless the user does: the tree does not depend on the size of the picture.
+/// Settings of the user, and where there are none, those of the viewer: the tree does not depend on the size of the picture.
 pub(crate) fn with_defaults(user: &Parameters) -> Parameters {
     let mut all = user.clone();
     for (key, value) in [("build", Value::from("balanced")), ("spp", Value::Integer(SAMPLES))] {
@@ -39,7 +39,7 @@ pub(crate) fn with_defaults(user: &Parameters) -> Parameters {
     all
 }
 
-/// What is asked of a picture with the user's settings and the viewer's.
+/// Request for a picture with the user's settings and the viewer's.
 pub(crate) fn request(user: &Parameters, max_memory: u64) -> JobRequest {
     JobRequest::from(&with_defaults(user)).max_memory(max_memory)
 }

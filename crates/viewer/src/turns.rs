@@ -1,11 +1,11 @@
-//! Who renders next. Small pictures, which are shown while a camera moves, wait for nobody. Pictures in full size take turns:
+//! Turns of the views. Small pictures, which are shown while a camera moves, wait for nobody. Pictures in full size take turns:
 //! so each visitor gets the same time, however many there are, and only one of them uses all cores and the memory for it.
 
 use crate::inbox::Inbox;
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Those that wait for their turn, in order; it is the turn of the first one.
+/// Inboxes of the views that wait for their turn, in order; it is the turn of the first one.
 #[derive(Default)]
 pub(crate) struct Turns(Mutex<VecDeque<Arc<Inbox>>>);
 

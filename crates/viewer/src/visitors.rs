@@ -1,4 +1,4 @@
-//! Who watches. Each visitor has a view of their own, until they have been away for a while; or all have the same one.
+//! Visitors. Each has a view of their own, until they have been away for a while; or all have the same one.
 
 use crate::ViewerError;
 use crate::common::Common;
@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// How long the view of a visitor is kept whose connection is lost.
+/// Time for which the view of a visitor is kept whose connection is lost.
 const KEPT: Duration = Duration::from_secs(60);
 
 /// A view must have room for at least so many pixels.
@@ -217,7 +217,7 @@ mod tests {
         Arc::new(Visitors::new(common, false, 4))
     }
 
-    /// Whoever comes back to a view whose render has failed gets one that works.
+    /// A visitor who comes back to a view whose render has failed gets one that works.
     #[test]
     fn a_view_that_has_ended_is_not_entered_again() {
         let visitors = visitors();

@@ -6,7 +6,7 @@ use bilux::watch::{Changes, Watched};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// How often the files are looked at.
+/// Interval at which the files are looked at.
 const EVERY: Duration = Duration::from_millis(400);
 
 /// Watches until the scene ends.

@@ -10,7 +10,7 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// What a file begins with, and the version of its form.
+/// First bytes of a checkpoint, with the version of its form.
 const MAGIC: &[u8; 20] = b"bilux checkpoint 1\n\0";
 /// No head is longer.
 const MAX_HEAD: u32 = 1 << 16;
@@ -24,7 +24,7 @@ pub fn checkpoint_path(picture: &Path) -> PathBuf {
     picture.with_file_name(name)
 }
 
-/// What a checkpoint says of itself.
+/// Head of a checkpoint: whose it is, and how far it got.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Head {
     /// Of which picture it is.
@@ -71,7 +71,7 @@ impl Head {
 
 /// A render that was saved, and can go on.
 pub struct SavedRender {
-    /// What the file says of itself.
+    /// Head of the file.
     pub head: Head,
     pub(crate) checkpoint: Checkpoint,
     pub(crate) path: PathBuf,
@@ -106,8 +106,8 @@ impl SavedRender {
     }
 }
 
-/// Where a checkpoint is written until it is complete. It is always the same name, so that a process that is killed while it
-/// writes leaves at most one such file.
+/// Path of a checkpoint until it is complete. It is always the same, so that a process that is killed while it writes leaves at
+/// most one such file.
 pub(super) fn part_path(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(".part");

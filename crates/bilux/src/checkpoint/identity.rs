@@ -1,4 +1,4 @@
-//! What a picture depends on, line by line, so that a message can say what is different.
+//! Identity of a picture: all that it depends on, line by line, so that a message can say what is different.
 
 use crate::Job;
 use crate::encoding::hash_what_is_seen;
@@ -6,7 +6,7 @@ use crate::settings::Settings;
 use bilux_scene::SceneBuilder;
 use bilux_transport::RenderSettings;
 
-/// What a picture's samples depend on: names and values.
+/// Names and values of all that a picture's samples depend on.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Identity(pub(super) Vec<(String, String)>);
 
@@ -14,7 +14,7 @@ pub struct Identity(pub(super) Vec<(String, String)>);
 const MAX_SHOWN: usize = 40;
 
 impl Identity {
-    /// What the samples of a job's picture depend on.
+    /// Identity of a job's picture.
     pub fn of(job: &Job) -> Identity {
         let mut identity = of_settings(&job.settings, &job.render);
         let hash = hash_what_is_seen(job.completed_scene(), &[], "");
@@ -27,7 +27,7 @@ impl Identity {
         self.0.push((name.replace(['\n', '='], " "), value.replace('\n', " ")));
     }
 
-    /// What is different in another one, as text: what is there, and what is here.
+    /// Lines that differ in another identity, as text: the value there, and the value here.
     pub fn differences(&self, other: &Identity) -> Vec<String> {
         let value_in = |lines: &Identity, name: &str| {
             let line = lines.0.iter().find(|(other, _)| other == name);
@@ -62,7 +62,7 @@ impl Identity {
     }
 }
 
-/// What the samples of a job depend on, the scene apart.
+/// Identity of a job's picture, without the scene.
 pub(crate) fn of_settings(settings: &Settings, render: &RenderSettings) -> Identity {
     let mut identity = Identity::default();
     let mut add = |name: &str, value: String| identity.add(name, &value);

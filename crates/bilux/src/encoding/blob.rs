@@ -6,13 +6,13 @@ use bilux_scene::media::{Grid, Stored};
 use bilux_scene::texture::{Image, Texels};
 use std::sync::Arc;
 
-/// What a blob begins with.
+/// First byte of a blob, by its kind: a mesh, a grid, or an image of bytes or of floats.
 pub(super) const MESH: u8 = b'M';
 pub(super) const GRID: u8 = b'G';
 pub(super) const BYTES: u8 = b'B';
 pub(super) const FLOATS: u8 = b'F';
 
-/// How many numbers become bytes at a time.
+/// Number of items of a list that become bytes at a time.
 const PIECE: usize = 4096;
 
 pub(super) static MESHES: KnownHashes<Mesh> = KnownHashes::new();
@@ -41,7 +41,7 @@ impl Blob {
         }
     }
 
-    /// Its bytes.
+    /// Bytes of the blob.
     pub fn bytes(&self) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(self.size_estimate());
         self.write(&mut |piece| bytes.extend_from_slice(piece));

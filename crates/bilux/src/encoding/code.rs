@@ -1,4 +1,4 @@
-//! How values become bytes, and bytes become values: numbers with the lowest byte first, and lists after their length.
+//! Conversion of values to bytes and back: numbers with the lowest byte first, and lists after their length.
 
 use super::error::EncodingError;
 use super::tables::{ReadTables, WrittenTables};
@@ -18,7 +18,7 @@ pub(super) trait Coded: Sized {
 #[derive(Default)]
 pub(super) struct Encoder {
     pub(super) bytes: Vec<u8>,
-    /// What values refer to by number.
+    /// Tables of the values that are referred to by number.
     pub(super) tables: WrittenTables,
     /// Leaves out what changes no picture: names, and places in files.
     pub(super) only_what_is_seen: bool,
@@ -33,7 +33,7 @@ impl Encoder {
     }
 }
 
-/// How deeply lists may be nested, and scenes in scenes. Scene files do not go as far.
+/// Maximum depth of lists in lists, and of scenes in scenes. Scene files do not go as far.
 const MAX_DEPTH: u32 = 200;
 
 /// Reads values.

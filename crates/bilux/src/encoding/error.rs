@@ -9,7 +9,7 @@ pub enum EncodingError {
     /// The bytes do not begin as an encoded scene does.
     #[error("this is not an encoded scene: encode one with the same version of Bilux")]
     NotAScene,
-    /// It has another version.
+    /// The scene has another version.
     #[error(
         "this scene was encoded by another version of Bilux (form {found}; this one reads {reads}): use the same version on \
          both sides, or save the scene to a file"
@@ -23,7 +23,7 @@ pub enum EncodingError {
     /// Something in it is impossible.
     #[error("the encoded scene is damaged at byte {at}: {what}; send it again")]
     Damaged {
-        /// What is wrong.
+        /// The fault.
         what: String,
         /// Bytes from its beginning.
         at: usize,

@@ -38,7 +38,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use tables::ReadTables;
 
-/// What a document begins with.
+/// First bytes of a document.
 const MAGIC: [u8; 12] = *b"bilux scene\n";
 
 /// The version of the form of documents and blobs; others are refused.

@@ -1,4 +1,4 @@
-//! How tables become bytes, and how what is in them is referred to.
+//! Conversion of tables to bytes and back, and references to what is in them.
 
 use super::blob::Blob;
 use super::code::{Coded, Decoder, Encoder};

@@ -1,4 +1,4 @@
-//! What an encoded scene refers to by number: names of files, meshes, grids, images and textures, each once.
+//! Tables of what an encoded scene refers to by number: names of files, meshes, grids, images and textures, each once.
 
 use super::blob::Blob;
 use super::hash::ContentHash;

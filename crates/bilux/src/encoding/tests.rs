@@ -1,4 +1,4 @@
-//! What is encoded comes back, and nothing that comes in does harm.
+//! Encoded scenes come back, and nothing that comes in does harm.
 
 use super::*;
 use crate::Job;

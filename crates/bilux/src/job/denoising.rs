@@ -1,4 +1,4 @@
-//! What denoises a picture and its shadows, and the time that this takes.
+//! Denoisers of a picture and its shadows, and the time that this takes.
 
 use super::Subject;
 use crate::settings::Settings;
@@ -7,7 +7,7 @@ use bilux_pictures::denoise::{Denoiser, DenoiserChoice, Task, denoiser};
 use bilux_transport::{RenderSettings, shadow_alpha_time};
 use std::time::Duration;
 
-/// What denoises the picture, if anything does.
+/// Denoiser of the picture, if any.
 ///
 /// # Errors
 /// If the denoiser that was asked for is not available.
@@ -27,7 +27,7 @@ pub(super) fn chosen(
     Ok(Some(denoiser(name, &task)?))
 }
 
-/// What removes the noise of a shadow on an invisible ground, where the picture is denoised: the built-in filter.
+/// Denoiser of a shadow on an invisible ground, where the picture is denoised: the built-in filter.
 pub(super) fn of_shadow(settings: &Settings) -> Result<Box<dyn Denoiser>, Error> {
     Ok(denoiser("builtin", &threads_task(settings))?.denoiser)
 }

@@ -1,4 +1,4 @@
-//! How a job is made: the scene is completed by the studio, then built, then looked at.
+//! Construction of a job: the scene is completed by the studio, then built, then looked at.
 
 use super::subject::Subject;
 use super::{Found, Job};
@@ -29,7 +29,7 @@ impl Job {
         Job::with_built(scene, request, &mut Built::default())
     }
 
-    /// The same picture, made with what earlier jobs have built of this scene or another; what is new is kept there.
+    /// Makes the same job as [`Job::new`], with parts that earlier jobs have built of this scene or another; new ones join them.
     ///
     /// # Errors
     /// As for [`Job::new`].
@@ -84,7 +84,7 @@ impl Job {
 /// A scene with what the studio adds, and with its camera where the settings have moved it.
 struct Completed {
     source: SceneBuilder,
-    /// What its own light was measured in.
+    /// The scene in which its own light was measured, as described and as built.
     alone: Option<(SceneBuilder, Scene)>,
     orientation: Option<Orientation>,
     catcher: Option<ShadowCatcher>,

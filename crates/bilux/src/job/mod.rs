@@ -23,38 +23,38 @@ pub(crate) use subject::Subject;
 /// A picture to be rendered. It never changes; [`at_time`](Job::at_time) and the like make other jobs of it.
 #[derive(Clone)]
 pub struct Job {
-    /// What is rendered.
+    /// The scene, the camera and the integrator.
     pub(crate) subject: Subject,
-    /// How the picture is to be, as the scene and the request say it together.
+    /// The settings of the scene and the request together.
     pub(crate) settings: Settings,
-    /// How the samples are taken.
+    /// The settings of the sampling.
     pub(crate) render: RenderSettings,
-    /// What was asked for.
+    /// The request.
     pub(crate) request: JobRequest,
-    /// What was found out while it was made.
+    /// Facts that were found out while the job was made.
     pub(crate) found: Arc<Found>,
-    /// What is found out when it is first needed.
+    /// Facts that are found out when they are first needed.
     pub(crate) known: Arc<Known>,
 }
 
-/// What is found out while a job is made.
+/// Facts that are found out while a job is made.
 pub(crate) struct Found {
     warnings: Vec<Warning>,
     notes: Vec<String>,
     studio_light: Option<String>,
-    /// How a model was rotated.
+    /// The rotation of a model.
     orientation: Option<Orientation>,
     /// The tone curve that `auto` means here.
     pub(crate) auto_curve: &'static str,
 }
 
-/// What is found out when it is first needed.
+/// Facts that are found out when they are first needed.
 #[derive(Default)]
 pub(crate) struct Known {
     fingerprint: OnceLock<String>,
-    /// What the integrator has chosen.
+    /// The choice of the integrator.
     plan: OnceLock<Option<Plan>>,
-    /// What denoises the picture, once something does.
+    /// The denoiser of the picture, once something is denoised.
     denoiser: OnceLock<Arc<DenoiserChoice>>,
 }
 
@@ -87,7 +87,7 @@ impl Job {
         Job { subject: Subject { next_pose, ..self.subject.clone() }, ..self.clone() }
     }
 
-    /// The same for the previous frame, for the layer of backward motion.
+    /// The picture of a scene whose meshes move from their pose in the previous frame, for the layer of backward motion.
     #[must_use]
     pub fn moving_from(&self, previous: &Job) -> Job {
         let previous_pose = Some(Arc::new(previous.subject.clone()));
@@ -99,22 +99,22 @@ impl Job {
         Series { turn: self.settings.studio.turn, own_light: self.settings.own_light }
     }
 
-    /// What is odd about the picture, even though it can be rendered.
+    /// Warnings: what is odd about the picture, even though it can be rendered.
     pub fn warnings(&self) -> &[Warning] {
         &self.found.warnings
     }
 
-    /// What was decided where the scene leaves a choice, such as what lights it.
+    /// Decisions that were made where the scene leaves a choice, such as what lights it.
     pub fn notes(&self) -> &[String] {
         &self.found.notes
     }
 
-    /// What the studio lights the scene with, as a list in words, if nothing else is to be told about its light.
+    /// Lights that the studio adds to the scene, as a list in words, if nothing else is to be told about its light.
     pub fn studio_light(&self) -> Option<&str> {
         self.found.studio_light.as_deref()
     }
 
-    /// How the model was rotated, if it came without a camera or the user asked for a rotation.
+    /// Rotation of the model, if it came without a camera or the user asked for a rotation.
     pub fn orientation(&self) -> Option<Orientation> {
         self.found.orientation
     }
@@ -153,8 +153,8 @@ impl Job {
         &self.settings
     }
 
-    /// What an integrator that chooses its strategies has chosen, once for all samples that are rendered from now on in
-    /// several ranges or parts. The picture is the same without it, but every range would begin with a choice.
+    /// Choice of an integrator that chooses its strategies, made once for all samples that are rendered from now on in several
+    /// ranges or parts. The picture is the same without it, but every range would begin with a choice.
     ///
     /// # Errors
     /// As for [`Job::render`].
@@ -167,7 +167,7 @@ impl Job {
         Ok(self.chosen())
     }
 
-    /// What it has chosen so far.
+    /// Choice that the integrator has made so far.
     fn chosen(&self) -> Option<&Plan> {
         self.known.plan.get().and_then(Option::as_ref)
     }
@@ -177,7 +177,7 @@ impl Job {
         self.chosen().map_or(self.integrator(), |plan| &*plan.integrator)
     }
 
-    /// What denoises the picture, if anything does ([`JobRequest::denoised`]).
+    /// Denoiser of the picture, if any ([`JobRequest::denoised`]).
     ///
     /// # Errors
     /// If the denoiser that was asked for is not available.

@@ -1,4 +1,4 @@
-//! How a job takes samples: all of them within a limit of time, ranges of them, those of one pixel, or one.
+//! Sampling of a job: all samples within a limit of time, ranges of them, those of one pixel, or one.
 
 use super::{Job, Subject, denoising};
 use crate::budget::time_for_rendering;
@@ -46,7 +46,7 @@ impl Job {
         self.completed(rendered, surfaces)
     }
 
-    /// What is wanted to be known of surfaces; features take a part of the time that the picture may take.
+    /// Features and labels of surfaces, as far as wanted; features take a part of the time that the picture may take.
     pub(crate) fn surfaces_within(
         &self,
         time: Option<Duration>,
@@ -125,7 +125,7 @@ impl Job {
         self.strategies_of(of.rendered.reached.map(|reached| reached.spp), progress)
     }
 
-    /// The same for the first samples of each pixel; by default for all.
+    /// Renders a picture for each strategy from the first samples of each pixel; by default from all.
     ///
     /// # Errors
     /// As [`Job::render`].

@@ -1,4 +1,4 @@
-//! What points of a job's scene receive, instead of its picture.
+//! Light that points of a job's scene receive, instead of its picture.
 
 use super::Job;
 use crate::Error;
@@ -60,7 +60,7 @@ impl Job {
         Ok(bilux_transport::sunlight(self.scene(), points, directions, &settings, progress)?)
     }
 
-    /// How points are measured; `bytes` is the memory for one.
+    /// Settings by which points are measured; `bytes` is the memory for one.
     fn settings_of(&self, points: &SensorPoints, bytes: u64) -> Result<RenderSettings, Error> {
         let count = points.points().len() as u64;
         let most = self.request.max_memory.unwrap_or(u64::MAX);

@@ -1,4 +1,4 @@
-//! What a job renders.
+//! Subject of a job.
 
 use crate::settings::{Settings, shutter_of};
 use bilux_scene::{AccelChoice, Camera, Scene, SceneBuilder};
@@ -6,7 +6,7 @@ use bilux_transport::ShadowCatcher;
 use bilux_transport::integrators::PixelIntegrator;
 use std::sync::Arc;
 
-/// What a job renders: a scene, as a camera sees it, by the light that an integrator finds.
+/// Subject of a job: a scene, as a camera sees it, by the light that an integrator finds.
 #[derive(Clone)]
 pub(crate) struct Subject {
     pub(crate) scene: Arc<Scene>,
@@ -25,7 +25,7 @@ pub(crate) struct Subject {
 }
 
 impl Subject {
-    /// The same at the time that the settings show. Static objects are not rebuilt.
+    /// The subject at the time that the settings show. Static objects are not rebuilt.
     pub(crate) fn at_time_of(&self, settings: &Settings) -> Subject {
         let scene = self.scene.at(&self.accel, shutter_of(settings));
         Subject { scene: Arc::new(scene), ..self.clone() }

@@ -1,4 +1,4 @@
-//! How a job's pictures are shown, described and written.
+//! Display, description and writing of a job's pictures.
 
 use super::Job;
 use crate::description::{options, row_vectors};
@@ -9,7 +9,7 @@ use crate::{Error, Outcome};
 use bilux_pictures::{Picture, WriteOptions};
 use std::path::Path;
 
-/// What differs less from a square pixel is a rounding.
+/// Largest relative difference from a square pixel that is a rounding.
 const SQUARE: f64 = 1e-4;
 
 impl Job {
@@ -43,7 +43,7 @@ impl Job {
         Ok(WriteOptions { exposure, tone_map, behind, ..WriteOptions::default() })
     }
 
-    /// How its pictures are to be shown.
+    /// Display of its pictures.
     ///
     /// # Errors
     /// If no tone curve has the name.

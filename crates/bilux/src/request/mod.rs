@@ -1,4 +1,4 @@
-//! What is asked of a job: its settings as Rust types, and what the settings of files cannot say.
+//! Request for a job: its settings as Rust types, and what the settings of files cannot say.
 
 /// Generates a method for each setting.
 macro_rules! settings {
@@ -31,7 +31,7 @@ use std::time::Instant;
 /// The value of the setting `denoise` that lets the kind of picture decide.
 const FOR_DISPLAY: &str = "display";
 
-/// What is asked of a [`Job`](crate::Job). Settings that are left out are those of the scene, or else the defaults.
+/// Request for a [`Job`](crate::Job). Settings that are left out are those of the scene, or else the defaults.
 ///
 /// ```
 /// use bilux::prelude::*;
@@ -46,7 +46,7 @@ const FOR_DISPLAY: &str = "display";
 pub struct JobRequest {
     /// Settings that take precedence over those of the scene.
     pub(crate) settings: Parameters,
-    /// What the picture has in common with others.
+    /// Properties that the picture has in common with others.
     pub(crate) series: Series,
     /// The maximum number of bytes of memory; `None` for any.
     pub(crate) max_memory: Option<u64>,
@@ -191,7 +191,7 @@ impl From<&Parameters> for JobRequest {
     }
 }
 
-/// What files and command lines write for a value of a Rust type.
+/// Conversion of a Rust type to the value that files and command lines write.
 trait IntoSetting {
     fn into_setting(self) -> Value;
 }

@@ -1,4 +1,4 @@
-//! What is odd about a picture before it is rendered, even though it can be rendered.
+//! Warnings before a picture is rendered: what is odd about it, even though it can be rendered.
 
 mod sight;
 mod textures;
@@ -69,7 +69,7 @@ fn of_boundaries(given: &SceneBuilder, scene: &Scene) -> Option<Warning> {
     Some(Warning { message, at: Span::default() })
 }
 
-/// What is odd about the ground that was asked for.
+/// Warning about the ground that was asked for.
 pub(crate) fn of_ground(studio: &Studio, has_ground: bool, has_backdrop: bool) -> Option<Warning> {
     let message = match studio.ground? {
         Ground::None => return None,

@@ -1,4 +1,4 @@
-//! What can be edited.
+//! Edits of a scene and its settings.
 
 use crate::Error;
 use bilux_math::Motion;

@@ -50,7 +50,7 @@ impl Session {
         Session::sharing(scene, request, Built::default())
     }
 
-    /// The same, with what another session has built of the scene ([`Session::built`]): both then hold the same trees.
+    /// A session with what another one has built of the scene ([`Session::built`]): both then hold the same trees.
     ///
     /// # Errors
     /// As for [`Session::new`].
@@ -173,7 +173,7 @@ impl Session {
         &self.picture.job
     }
 
-    /// What was built of the scene, for sessions that share it ([`Session::sharing`]).
+    /// Parts that were built of the scene, for sessions that share it ([`Session::sharing`]).
     pub fn built(&self) -> &Built {
         &self.built
     }
@@ -184,7 +184,7 @@ impl Session {
     }
 }
 
-/// What is asked for, without limits of noise and time, for all samples, as they are.
+/// Request without limits of noise and time, for all samples, not denoised.
 fn without_limits(request: JobRequest) -> JobRequest {
     let request = JobRequest { samples: None, denoised: Denoised::No, ..request };
     request.set("noise", Value::Integer(0)).set("time_limit", Value::Integer(0))

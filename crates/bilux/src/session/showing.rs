@@ -1,4 +1,4 @@
-//! What changes of a picture without new samples.
+//! Changes of a picture that need no new samples.
 
 use crate::Job;
 use crate::settings::Settings;

@@ -5,7 +5,7 @@ use bilux_math::Rgb;
 use bilux_math::colour::srgb_decode;
 use bilux_scene::{Reader, SceneError};
 
-/// What is visible where the scene has nothing.
+/// Background: what is visible where the scene has nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Background {
     /// The scene's own background, or whatever lights it.

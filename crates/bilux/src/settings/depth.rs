@@ -1,4 +1,4 @@
-//! How many scattering events a path may have.
+//! Number of scattering events that a path may have.
 
 use bilux_scene::{Parameters, Reader};
 

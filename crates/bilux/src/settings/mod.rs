@@ -225,7 +225,7 @@ pub struct Settings {
     pub height: u32,
     /// Samples per pixel.
     pub spp: u32,
-    /// What ends the picture before all samples are taken.
+    /// The limits that end the picture before all samples are taken.
     pub stop: Stop,
     /// The seed of the random numbers.
     pub seed: u64,
@@ -235,17 +235,17 @@ pub struct Settings {
     pub threads: usize,
     /// The name or number of the camera.
     pub camera: String,
-    /// Where the camera was requested, for messages.
+    /// The place where the camera was requested, for messages.
     pub camera_at: Span,
-    /// Where the camera is moved to.
+    /// The view to which the camera is moved.
     pub view: View,
     /// The settings of the studio.
     pub studio: Studio,
     /// The time to show, in seconds.
     pub time: f32,
-    /// How long the shutter is open, in seconds.
+    /// The time for which the shutter is open, in seconds.
     pub shutter: f32,
-    /// How much later the last row of pixels is exposed than the first, in seconds.
+    /// The time from the exposure of the first row of pixels to that of the last, in seconds.
     pub readout: f32,
     /// Frames per second.
     pub fps: f32,
@@ -259,7 +259,7 @@ pub struct Settings {
     pub exposure: f32,
     /// Whether the file or the user states the exposure.
     pub states_exposure: bool,
-    /// What was found of the scene's own light.
+    /// The judgement of the scene's own light.
     pub(crate) own_light: Option<Judged>,
     /// Whether automatic exposure is added to it.
     pub auto_exposure: bool,
@@ -267,11 +267,11 @@ pub struct Settings {
     pub tonemap: String,
     /// The denoiser.
     pub denoise: String,
-    /// What is visible where the scene has nothing.
+    /// The background, visible where the scene has nothing.
     pub background: Background,
     /// Whether bytes are proportional to light.
     pub linear_transfer: bool,
-    /// What files and users said, from which all of this follows.
+    /// The settings as files and users gave them, from which all of this follows.
     pub given: Parameters,
 }
 

@@ -18,7 +18,7 @@ pub(super) fn as_list_text(value: Value) -> Value {
     }
 }
 
-/// What the settings ask of the studio.
+/// Studio that the settings ask for.
 pub(super) fn studio(reader: &Reader) -> Result<Studio, Error> {
     let orbit = match reader.is_given("orbit") {
         true => {

@@ -13,7 +13,7 @@ use bilux_scene::{Reader, SceneBuilder, SceneError, Value};
 /// The value of `eye` and `look_at` that leaves the camera where it is.
 pub(super) const OF_CAMERA: &str = "camera";
 
-/// Where the camera is moved to.
+/// View to which the camera is moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     /// The position of the eye, if it is moved.
@@ -31,7 +31,7 @@ impl Default for View {
 }
 
 impl View {
-    /// What the settings ask for.
+    /// View that the settings ask for.
     pub(super) fn read(reader: &Reader) -> Result<View, Error> {
         let point = |key: &str| match reader.text(key) {
             text if text == OF_CAMERA => Ok(None),

@@ -142,10 +142,10 @@ fn every_change_of_a_scene_changes_the_fingerprint() {
     assert_eq!(seen[&fingerprint(&renamed, &settings)], "nothing");
 }
 
-/// What a setting does to the samples.
+/// Effect of a setting on the samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Effect {
-    /// It may change each of them.
+    /// May change each of the samples.
     Changes,
     /// The samples are the same bit for bit, or are other samples of the same picture.
     Keeps,

@@ -275,12 +275,12 @@ fn within(parameter: &Parameter) -> Value {
     }
 }
 
-/// What a field of the settings does to the samples.
+/// Effect of a field of the settings on the samples.
 #[derive(Debug, PartialEq)]
 enum Effect {
-    /// It is part of the fingerprint.
+    /// Is part of the fingerprint.
     Counts,
-    /// It changes no sample, or changes the scene, which has a fingerprint of its own.
+    /// Changes no sample, or changes the scene, which has a fingerprint of its own.
     Keeps,
 }
 use Effect::{Counts, Keeps};

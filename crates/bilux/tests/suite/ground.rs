@@ -1,4 +1,4 @@
-//! What a model stands on: a ground of which only the shadow is in the picture, and a mirror.
+//! Grounds that a model stands on: one of which only the shadow is in the picture, and a mirror.
 
 use bilux::math::{Aabb, Rgb, Vec3};
 use bilux::prelude::*;

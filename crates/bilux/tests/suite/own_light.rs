@@ -475,7 +475,7 @@ fn light_that_is_next_to_nothing_is_exposed() {
     assert_eq!(shown(&away, &[]).1, 0.0);
 }
 
-/// What is not exposed gets no brighter surroundings.
+/// Surroundings get no brighter where the picture is not exposed.
 #[test]
 fn exposures_leave_the_classic_shading_alone() {
     let room = |lux: f32, integrator: &str| {

@@ -11,7 +11,7 @@ use bilux::scene::generators::shapes;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// What a closed form and a picture may differ by, of the former.
+/// Allowed difference of a picture from a closed form, as a fraction of the latter.
 const ALLOWED: f64 = 1e-3;
 const REFLECTANCE: f32 = 0.5;
 const LAMP: Vec3 = Vec3::new(0.2, 3.0, -0.1);
@@ -53,7 +53,7 @@ fn illuminance(scene: SceneBuilder, at: Vec3, integrator: &str, spp: i64) -> f64
     illuminance_of(scene, at, integrator, spp, 1e-3)
 }
 
-/// The same of a square with this side.
+/// The illuminance of a square with this side.
 fn illuminance_of(mut scene: SceneBuilder, at: Vec3, integrator: &str, spp: i64, side: f32) -> f64 {
     let spec = Spec::new("eye", "orthographic")
         .with("position", at + Vec3::Y)
@@ -88,7 +88,7 @@ fn under_the_lamp(at: Vec3) -> f64 {
     (1000.0 + 5.0 * gamma + 2.0 * c) * -away.y / (away.length() * away.length_squared())
 }
 
-/// How much the worst of the points is off.
+/// Largest relative error among the points.
 fn worst(text: &str) -> f64 {
     let one = |at: Vec3| off(illuminance(room(lamp(text)), at, "path", 4), under_the_lamp(at));
     // Straight below, where half planes meet, the mean over a pixel is not that of a plane.

@@ -1,4 +1,4 @@
-//! What is asked of a job in Rust types is what it is asked in text.
+//! Requests in Rust types ask a job for the same as requests in text.
 
 use bilux::JobRequest;
 use bilux::math::Vec3;

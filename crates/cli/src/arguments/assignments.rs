@@ -68,7 +68,7 @@ fn scalar(text: &str) -> Value {
     }
 }
 
-/// Where a value came from, as messages name it.
+/// Origin of a value that an option gives, as messages name it.
 pub fn from_flag(flag: &str) -> Span {
     Span { file: flag.into(), line: 0, column: 0 }
 }

@@ -33,7 +33,7 @@ pub enum Checkpoints {
     Every(Duration),
 }
 
-/// What is meant if nothing is said.
+/// Checkpoints if nothing is said of them.
 const DEFAULT: Checkpoints = Checkpoints::Every(Duration::from_secs(60));
 
 impl Lasting {

@@ -92,7 +92,7 @@ impl StudioArguments {
         Ok(())
     }
 
-    /// The same options with another environment, if there is one.
+    /// These options with another environment, if there is one.
     pub fn with_env(&self, env: Option<PathBuf>) -> StudioArguments {
         StudioArguments { env: env.or(self.env.clone()), ..self.clone() }
     }

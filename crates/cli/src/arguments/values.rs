@@ -144,7 +144,7 @@ pub fn parse_seconds(text: &str) -> Result<f32, String> {
         .ok_or_else(advice_on_seconds)
 }
 
-/// The same in double precision.
+/// Parses a time in seconds, above 0, in double precision.
 pub fn parse_cpu_seconds(text: &str) -> Result<f64, String> {
     seconds_of(text).ok_or_else(advice_on_seconds)
 }

@@ -1,4 +1,4 @@
-//! What `-V` prints.
+//! Text that `-V` prints.
 
 use crate::sandbox;
 use bilux::accel::CpuLevel;

@@ -49,7 +49,7 @@ impl Line {
         Line { command: command.cloned().unwrap_or_default(), words }
     }
 
-    /// What to write for an argument that is missing.
+    /// Advice for an argument that is missing.
     fn about_missing(&self, missing: &str) -> Option<String> {
         let whole = EXAMPLES
             .iter()
@@ -73,7 +73,7 @@ impl Line {
         })
     }
 
-    /// What to write instead of an unknown command, or an unknown benchmark.
+    /// Advice on what to write instead of an unknown command, or an unknown benchmark.
     fn about_command(&self, name: &str) -> Option<String> {
         let known = Arguments::command();
         // That of the benchmarks, if the word is in the place of one.
@@ -84,14 +84,14 @@ impl Line {
         in_place_of_command.or_else(|| near.map(|near| format!("a similar subcommand exists: '{near}'")))
     }
 
-    /// What to write instead of an option that other programs have.
+    /// Advice on what to write instead of an option that other programs have.
     fn about_renamed(&self, name: &str) -> Option<String> {
         let (.., advice) =
             RENAMED.iter().filter(|_| self.command == "render").find(|(names, _)| names.contains(&name))?;
         Some((*advice).to_owned())
     }
 
-    /// What to write instead of an unknown argument, unless the message already names a similar one.
+    /// Advice on what to write instead of an unknown argument, unless the message already names a similar one.
     fn about_unknown(&self, name: &str, error: &clap::Error) -> Option<String> {
         if error.get(ContextKind::SuggestedArg).is_some() {
             return None;
@@ -119,10 +119,10 @@ impl Line {
     }
 }
 
-/// What the help calls a benchmark.
+/// Name of a benchmark in the help.
 const KIND: &str = "<KIND>";
 
-/// What to write for a command whose argument is missing.
+/// Commands, arguments that may be missing, and the advice for them.
 const EXAMPLES: &[(&str, &str, &str)] = &[
     ("render", "<SCENE>", "name the scene and the picture, such as `bilux render model.glb -o picture.png`"),
     ("info", "<SCENE>", "name the scene, such as `bilux info model.glb`"),
@@ -171,7 +171,7 @@ const RENAMED: &[(&[&str], &str)] = &[
     (&["--force", "-f", "-y", "--overwrite"], "leave it out: an older picture is replaced without it"),
 ];
 
-/// What to write instead of a file in the place of a command.
+/// Advice on what to write instead of a file in the place of a command.
 fn of_file(name: &str) -> Option<String> {
     let path = Path::new(name);
     let extension = path.extension()?.to_str()?;

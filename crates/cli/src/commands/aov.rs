@@ -19,9 +19,9 @@ use std::path::{Path, PathBuf};
 
 /// The layers of an `.exr`.
 pub struct Layers<'a> {
-    /// Those that rendering keeps.
+    /// The layers that rendering keeps.
     pub kept: &'a [Aov],
-    /// Those that are made after it.
+    /// The layers that are made after it.
     pub extra: Option<&'a ExtraLayers>,
 }
 
@@ -62,7 +62,7 @@ pub fn wants(arguments: &Render, aov: Aov) -> bool {
         || arguments.aov.iter().any(|name| AOVS.iter().any(|row| row.entry.name == name && row.aov == aov))
 }
 
-/// What a render keeps for its outputs while it takes samples.
+/// Layers that a render keeps for its outputs while it takes samples.
 pub fn kept(arguments: &Render) -> Vec<Aov> {
     let interval = [Aov::Interval].into_iter().filter(|&aov| wants(arguments, aov));
     layers(arguments).into_iter().chain(interval).collect()

@@ -100,7 +100,7 @@ fn size(text: Option<&String>) -> anyhow::Result<Option<(u32, u32)>> {
     text.map(size).transpose().map_err(usage::wrong)
 }
 
-/// How often, and where teapots stand meanwhile.
+/// Number of repeats, and the place of teapots meanwhile.
 fn repeated(of: &Repeated) -> Options {
     let defaults = Options::default();
     Options {

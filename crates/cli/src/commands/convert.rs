@@ -128,7 +128,7 @@ fn convert_scene(given: &Given, arguments: &Convert, common: &Common) -> anyhow:
     report_warnings(&bilux::formats::write(output, &scene, &options)?, common)
 }
 
-/// What becomes of a picture before it is written in the format of this name.
+/// Picture as it is to be written in the format of this name.
 fn converted(
     picture: Picture,
     arguments: &Convert,

@@ -17,7 +17,7 @@ use std::collections::BTreeSet;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
-/// What the file begins with.
+/// First line of the file.
 const FIRST_LINE: &str = "bilux frames 1\n";
 /// The line with the numbers of the frames that are finished.
 const FINISHED: &str = "finished";
@@ -30,7 +30,7 @@ pub struct FinishedFrames<'a> {
     user: &'a Parameters,
     /// `None` if nothing is kept.
     path: Option<PathBuf>,
-    /// What all frames depend on.
+    /// The identity of all frames: what they depend on.
     identity: Option<Identity>,
     finished: BTreeSet<u32>,
 }
@@ -104,7 +104,7 @@ impl<'a> FinishedFrames<'a> {
         }
     }
 
-    /// What all frames depend on, which is computed once: the contents of all files, and the command line.
+    /// Identity of all frames, which is computed once: the contents of all files, and the command line.
     fn identity(&mut self) -> anyhow::Result<&Identity> {
         if self.identity.is_none() {
             self.identity = Some(identity(self.input, self.user)?);

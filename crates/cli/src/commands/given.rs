@@ -15,7 +15,7 @@ use bilux::scene::{SceneBuilder, SceneError};
 use std::io::Read;
 use std::path::Path;
 
-/// What messages call standard input.
+/// Name of standard input in messages.
 const STANDARD_INPUT: &str = "standard input";
 
 /// Detects the format of what is on standard input.
@@ -24,9 +24,9 @@ const AUTO: &str = "auto";
 /// A file, or all that was on standard input.
 pub struct Given<'a> {
     path: &'a Path,
-    /// What was on standard input, which can be read only once.
+    /// The bytes of standard input, which can be read only once.
     piped: Option<Vec<u8>>,
-    /// Its format; by its first bytes if it is empty.
+    /// The format of these bytes; detected from the first of them if this is empty.
     format: &'a str,
 }
 
@@ -49,7 +49,7 @@ impl<'a> Given<'a> {
         Ok(Given { path, piped: Some(bytes), format: if format == AUTO { "" } else { format } })
     }
 
-    /// What was on standard input, if that was read.
+    /// Bytes of standard input, if it was read.
     pub fn piped(&self) -> Option<&[u8]> {
         self.piped.as_deref()
     }

@@ -29,7 +29,7 @@ pub struct Input<'a> {
     pub interrupt: &'a Interrupt,
     /// When the picture that is rendered next was started.
     pub begun: Cell<Instant>,
-    /// What the pictures of a turntable share.
+    /// The parts of a scene that the pictures of a turntable share.
     built: RefCell<Built>,
     /// Every warning so far, for `--json`.
     pub warnings: RefCell<Vec<String>>,
@@ -37,7 +37,7 @@ pub struct Input<'a> {
     notes: RefCell<BTreeSet<String>>,
     /// Every file that was read.
     pub files: RefCell<BTreeSet<PathBuf>>,
-    /// Where they are watched, if they are.
+    /// The watch on these files, if they are watched.
     watched: Option<&'a Watched>,
 }
 
@@ -140,7 +140,7 @@ impl Input<'_> {
         Ok(job)
     }
 
-    /// What the command line asks of a picture.
+    /// Request of the command line for a picture.
     fn request(&self, user: &Parameters, series: &Series, output: &Path) -> anyhow::Result<JobRequest> {
         let (arguments, common) = (self.arguments, self.common);
         // A path is drawn into the picture that is shown, even if only a part of it is rendered.

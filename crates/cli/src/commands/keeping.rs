@@ -76,7 +76,7 @@ impl Keeping {
         Ok((keeping, saved))
     }
 
-    /// What writes the checkpoints of this render; `saved` is the one that it goes on from.
+    /// Writer of the checkpoints of this render; `saved` is the one that it goes on from.
     pub fn writer<'a>(&self, job: &'a Job, saved: Option<&SavedRender>) -> Option<CheckpointWriter<'a>> {
         let (path, Checkpoints::Every(every)) = (self.path.as_ref()?, self.every) else { return None };
         let mut writer = CheckpointWriter::new(job, path, Some(every)).on_failure(|error| {

@@ -1,4 +1,4 @@
-//! What is reported about a picture once it is written: a line of text, or a line of JSON.
+//! Report about a picture once it is written: a line of text, or a line of JSON.
 
 use crate::process::output;
 use bilux::budget::DEFAULT_BUDGET;

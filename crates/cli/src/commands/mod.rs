@@ -68,7 +68,7 @@ fn read_options(common: &Common) -> ReadOptions {
     }
 }
 
-/// The same, with the choices within a file, at a time in seconds.
+/// The options for reading files, with the choices within a file, at a time in seconds.
 fn read_options_with(common: &Common, choices: &Choices, time: f32) -> ReadOptions {
     ReadOptions {
         time,

@@ -1,4 +1,4 @@
-//! Where pictures go: files, or standard output, in any format.
+//! Destinations of pictures: files, or standard output, in any format.
 
 use super::{check_folder, check_quality};
 use crate::arguments::streams::{PNG, is_stdout, named};

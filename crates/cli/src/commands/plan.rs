@@ -26,7 +26,7 @@ pub struct Plan<'a> {
 }
 
 impl Plan<'_> {
-    /// Those of the channel of this name, or of the first of the layer of this name; with `--unit` in photometric units.
+    /// Values of the channel of this name, or of the first of the layer of this name; with `--unit` in photometric units.
     ///
     /// # Errors
     /// If there is no such channel, or it has no such unit.

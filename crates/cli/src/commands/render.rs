@@ -102,8 +102,8 @@ fn confine(targets: &[Target], arguments: &Render, common: &Common) -> anyhow::R
     confines.enter(common)
 }
 
-/// What a render has under `--sandbox`: it reads the scenes, their folders and the files that options name, and writes to the
-/// picture's folder.
+/// Permissions of a render under `--sandbox`: it reads the scenes, their folders and the files that options name, and writes to
+/// the picture's folder.
 pub fn confines(targets: &[Target], arguments: &Render) -> SandboxPaths {
     let studio = &arguments.studio;
     let mut confines = SandboxPaths::default();
@@ -129,7 +129,7 @@ pub fn confines(targets: &[Target], arguments: &Render) -> SandboxPaths {
     confines
 }
 
-/// What is written beside a picture.
+/// Files that are written beside a picture.
 fn beside(target: &Target, arguments: &Render) -> Vec<PathBuf> {
     let mut files = aov::files(arguments, &target.output);
     files.extend([checkpoint_path(&target.output), target.output.with_extension("strategies")]);

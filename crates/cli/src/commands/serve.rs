@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 
 /// The maximum number of visitors, each of whom has a picture of their own.
 const VISITORS: u32 = 24;
-/// The same if all see the same picture.
+/// The maximum number of visitors if all see the same picture.
 const SHARED_VISITORS: u32 = 64;
 
 /// The maximum number of environments to choose from.
@@ -62,7 +62,7 @@ pub fn run(arguments: Serve, common: &Common) -> anyhow::Result<u8> {
     Ok(DONE)
 }
 
-/// What may light the scene, as `--env` names it: what needs no file, and the pictures of light that lie next to it.
+/// Environments that may light the scene, as `--env` names them: those that need no file, and the pictures of light next to it.
 fn environments(arguments: &Serve) -> Vec<String> {
     let is_light = |path: &PathBuf| {
         let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();

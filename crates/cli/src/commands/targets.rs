@@ -1,4 +1,4 @@
-//! Where the pictures of a render go. Mistakes are found before anything is rendered.
+//! Destinations of the pictures of a render. Mistakes are found before anything is rendered.
 
 use super::{check_folder, outputs};
 use crate::arguments::Render;
@@ -14,7 +14,7 @@ pub struct Target {
     pub scene: PathBuf,
     /// `-` for standard output.
     pub output: PathBuf,
-    /// Where its statistics go, if they were asked for.
+    /// The destination of its statistics, if they were asked for.
     pub stats: Option<PathBuf>,
 }
 

@@ -4,7 +4,7 @@ use crate::process::output;
 use bilux::{Job, Outcome};
 use std::time::Duration;
 
-/// How much longer than its limit a picture may take: the larger of a duration and a fraction of the limit.
+/// Time by which a picture may exceed its limit: the larger of a duration and a fraction of the limit.
 const TOLERANCE: (Duration, f64) = (Duration::from_millis(200), 0.05);
 
 /// Explains in one line why a picture took longer than its limit, if it did. The times are those since its begin: when

@@ -11,9 +11,9 @@ use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// How often the files are looked at.
+/// Interval at which the files are looked at.
 const EVERY: Duration = Duration::from_millis(200);
-/// How often it is checked whether there is something to do.
+/// Interval at which it is checked whether there is something to do.
 const TICK: Duration = Duration::from_millis(20);
 
 /// Refuses to watch what cannot change, or several scenes.

@@ -1,4 +1,4 @@
-//! How the picture of a render becomes a file.
+//! Denoising and writing of the picture of a render.
 
 use super::aov::{self, Layers};
 use super::input::Input;
@@ -15,7 +15,7 @@ use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::thread::Builder;
 use std::time::Duration;
 
-/// How often it is checked whether denoising has to give way to saving what there is.
+/// Interval at which it is checked whether denoising has to give way to saving what there is.
 const TICK: Duration = Duration::from_millis(20);
 
 /// The denoised picture, which is `None` if a signal or the timeout comes first: there is no time to wait for it.
@@ -45,11 +45,11 @@ fn denoised(
 /// Whether the picture in the file is denoised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Denoising {
-    /// It was not wanted.
+    /// Not wanted.
     Off,
-    /// It is.
+    /// Denoised.
     Done,
-    /// It is not, since a signal or the timeout came first.
+    /// Not denoised, since a signal or the timeout came first.
     CutShort,
 }
 

@@ -25,10 +25,10 @@ use std::time::{Duration, Instant};
 /// All protocols; the first that is detected is taken. Blocks are last: every terminal has them.
 static PROTOCOLS: &[Protocol] = &[kitty::ENTRY, iterm::ENTRY, sixel::ENTRY, blocks::ENTRY];
 
-/// What `--preview` asks for.
+/// Protocol that `--preview` asks for.
 #[derive(Clone, Copy)]
 pub enum PreviewChoice {
-    /// What the terminal understands.
+    /// The protocol that the terminal understands.
     Auto,
     /// This protocol.
     Named(&'static Protocol),
@@ -150,7 +150,7 @@ impl Preview {
     }
 }
 
-/// What is drawn, and where.
+/// Place of the picture in the terminal, and how it is drawn there.
 struct Screen {
     protocol: &'static Protocol,
     bar: Option<ProgressBar>,
@@ -192,11 +192,11 @@ fn terminal_size() -> [u32; 2] {
     size.filter(|size| size.iter().all(|side| *side > 1)).unwrap_or(USUAL)
 }
 
-/// What sees the film while it is rendered.
+/// Observers of the film while it is rendered.
 pub struct Observers<'a, 'j> {
     pub writer: Option<&'a CheckpointWriter<'j>>,
     pub preview: Option<&'a Preview>,
-    /// What may end the render, if it then leaves no checkpoint.
+    /// The interrupt that may end the render, if it then leaves no checkpoint.
     pub ends: Option<&'a Interrupt>,
 }
 

@@ -11,11 +11,11 @@ pub struct Protocol {
     pub(super) cell: [u32; 2],
     /// True if the environment says that the terminal understands it.
     pub(super) detect: fn(&Environment) -> bool,
-    /// What is written to show a picture in so many columns and rows, from the place of the cursor on, which may end anywhere.
+    /// Bytes that show a picture in so many columns and rows, from the place of the cursor on, which may end anywhere.
     pub(super) draw: fn(&Picture, &WriteOptions, [u32; 2]) -> anyhow::Result<Vec<u8>>,
 }
 
-/// What terminals say of themselves.
+/// Variables by which terminals say what they are.
 pub(super) struct Environment {
     pub(super) term: String,
     pub(super) program: String,

@@ -1,4 +1,4 @@
-//! How the system's allocator gives memory back, how its memory is shared among threads, and what happens where there is none.
+//! Allocator of the system: how it gives memory back, how threads share its memory, and what happens where there is none.
 //!
 //! By default, glibc keeps freed memory for later use, up to 64 MB at a time in each thread's arena, once blocks of some MB have come and gone.
 //! A large picture frees many such blocks between its stages, and none of the later ones fits into them. Blocks that have their own pages go back
@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// The exit status: the work failed.
 const FAILED: u8 = 1;
 
-/// Whoever needs so little memory, and gets none, cannot go on; more may be asked for by code that can.
+/// Largest block that no code can go on without; more may be asked for by code that can.
 const LITTLE: usize = 64 << 10;
 
 /// The size of the block that was refused last.

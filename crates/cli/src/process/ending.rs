@@ -1,5 +1,5 @@
-//! How the process ends in the midst of its work: after a signal, a timeout, or where memory runs out. It says why, on
-//! standard error and, if `--json` promises a line for each scene, there; and it leaves no half-written file.
+//! End of the process in the midst of its work: after a signal, a timeout, or where memory runs out. The process says why, on
+//! standard error and, if `--json` promises a line for each scene, on standard output; and it leaves no half-written file.
 //!
 //! Nothing here allocates memory or waits for another thread or process, since there may be no memory, the other thread may be
 //! the one that ends, and whoever should read the message may not.
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// What is under way, for the message.
+/// Picture that is under way, for the message.
 static UNDER_WAY: Mutex<Option<UnderWay>> = Mutex::new(None);
 
 /// A file that goes when a server or the timeout ends the process, since nobody has asked for it.

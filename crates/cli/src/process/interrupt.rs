@@ -1,10 +1,10 @@
-//! What interrupts the work: Ctrl-C, SIGTERM, the end of the terminal, `--timeout`, or a change of what is rendered.
+//! Interruption of the work: Ctrl-C, SIGTERM, the end of the terminal, `--timeout`, or a change of what is rendered.
 
 use signal_hook::consts::SIGTERM;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 
-/// What has interrupted the work, if anything has.
+/// Interruption of the work, if any.
 #[derive(Clone, Default)]
 pub struct Interrupt {
     /// The signal's number, or [`TIMEOUT`].
@@ -26,7 +26,7 @@ const TIMEOUT: usize = usize::MAX;
 /// The one of this process.
 static INTERRUPT: OnceLock<Interrupt> = OnceLock::new();
 
-/// What interrupts the work of this process.
+/// Interruption of the work of this process.
 pub fn interrupt() -> &'static Interrupt {
     INTERRUPT.get_or_init(Interrupt::default)
 }

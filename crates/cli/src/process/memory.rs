@@ -1,5 +1,5 @@
-//! How much memory this process takes, where the system gives it less than the machine has: a lower `--max-memory`, fewer
-//! threads, and a message in place of a kill.
+//! Memory that this process takes, where the system gives it less than the machine has: a lower `--max-memory`, fewer threads,
+//! and a message in place of a kill.
 
 use anyhow::Context;
 use bilux::memory_limit::{LimitSource, MemoryLimit};
@@ -12,7 +12,7 @@ static LIMIT: OnceLock<Option<MemoryLimit>> = OnceLock::new();
 /// Whether the limit is what bounds `--max-memory`.
 static IS_TIGHTER: AtomicBool = AtomicBool::new(false);
 
-/// What `--max-memory` allows, as it is bounded.
+/// Bytes that `--max-memory` allows, as it is bounded.
 static ALLOWED: AtomicU64 = AtomicU64::new(0);
 
 /// The limit that the system imposes, if it does.
@@ -20,8 +20,8 @@ pub fn imposed() -> Option<&'static MemoryLimit> {
     LIMIT.get_or_init(MemoryLimit::of_process).as_ref().filter(|limit| limit.is_imposed())
 }
 
-/// Whoever takes more than its control group has is killed. A limit of the process's own data a little below makes that an
-/// error which can be reported.
+/// Limits the process's own data to a little less than its control group has: a process that takes more than the group has is
+/// killed, but a refusal by this limit is an error which can be reported.
 #[cfg(target_os = "linux")]
 fn refuse_before_kill(limit: &MemoryLimit) {
     use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
@@ -56,12 +56,12 @@ pub fn allowed() -> u64 {
     ALLOWED.load(Ordering::Relaxed)
 }
 
-/// What sets the limit, if the system imposes one.
+/// Source of the limit, if the system imposes one.
 pub fn source() -> Option<LimitSource> {
     LIMIT.get()?.filter(MemoryLimit::is_imposed).map(|limit| limit.source)
 }
 
-/// What bounds `--max-memory`, if it is not the option itself.
+/// Source of the limit that bounds `--max-memory`, if it is not the option itself.
 pub fn tighter() -> Option<LimitSource> {
     let limit = LIMIT.get().copied().flatten()?;
     IS_TIGHTER.load(Ordering::Relaxed).then_some(limit.source)

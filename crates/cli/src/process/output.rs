@@ -65,7 +65,7 @@ pub fn eprint(text: impl Display) {
     eprint_after("", text);
 }
 
-/// The same after a word of our own, which may be in colour.
+/// Prints a line to standard error after a word of our own, which may be in colour.
 fn eprint_after(word: &str, text: impl Display) {
     // If standard error is closed, there is nowhere to report it.
     let _ = writeln!(io::stderr(), "{word}{}", harmless(&text.to_string()));

@@ -15,7 +15,7 @@ use std::sync::Arc;
 use std::thread::Builder;
 use std::time::Duration;
 
-/// How long saving may take after a signal or a timeout; the process is gone within 2 seconds.
+/// Time that saving may take after a signal or a timeout; the process is gone within 2 seconds.
 pub const GRACE: Duration = Duration::from_millis(1800);
 
 /// The signals that end the work. `nohup` has that of a closed terminal ignored, which holds. A sandbox hides what says so.
@@ -70,7 +70,7 @@ pub fn end_after(interrupt: &Interrupt, left: Duration, timeout: Duration) -> an
     Ok(())
 }
 
-/// What a signal does.
+/// Acts on a signal.
 fn signalled(interrupt: &Interrupt, signal: i32) {
     let is_first = interrupt.note(signal);
     if !is_first && interrupt.ignores_more() {

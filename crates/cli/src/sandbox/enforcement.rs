@@ -1,6 +1,6 @@
-//! What a kernel enforces of a sandbox.
+//! Enforcement of a sandbox by the kernel.
 
-/// What the kernel enforces.
+/// Rules of a sandbox that the kernel enforces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Enforcement {
     /// Nothing.

@@ -8,13 +8,13 @@ use landlock::{
 };
 use std::path::{Path, PathBuf};
 
-/// What is requested: files, TCP, and signals and sockets to other processes. Older kernels enforce what they can.
+/// Rules that are requested: on files, TCP, and signals and sockets to other processes. Older kernels enforce what they can.
 const WANTED: ABI = ABI::V6;
 
 /// The files that say how many cores a process may use, which sets the number of threads. They hold nobody's secrets.
 const SYSTEM: [&str; 3] = ["/sys/fs/cgroup", "/sys/devices/system/cpu", "/proc/self/cgroup"];
 
-/// What this kernel can enforce.
+/// Rules that this kernel can enforce.
 pub fn available() -> Enforcement {
     let required = || Ruleset::default().set_compatibility(CompatLevel::HardRequirement);
     if required().handle_access(AccessNet::ConnectTcp).is_ok() {
@@ -73,7 +73,7 @@ mod tests {
     use std::io::{Error, ErrorKind};
     use std::net::{TcpListener, TcpStream};
 
-    /// What a faulty decoder might attempt, and the outcome.
+    /// Attempts that a faulty decoder might make, and the outcome.
     fn attempts(folder: &Path, port: u16) -> Vec<(&'static str, Result<(), Error>)> {
         let in_thread = {
             let secret = folder.join("secret");

@@ -1,4 +1,4 @@
-//! What the kernel, where it can, enforces of `--sandbox`, whatever a faulty decoder may try.
+//! Enforcement of `--sandbox` by the kernel, where it can, whatever a faulty decoder may try.
 
 mod enforcement;
 #[cfg(target_os = "linux")]

@@ -3,7 +3,7 @@
 use super::enforcement::Enforcement;
 use std::path::{Path, PathBuf};
 
-/// What this kernel can enforce.
+/// Rules that this kernel can enforce: none.
 pub fn available() -> Enforcement {
     Enforcement::Nothing
 }

@@ -101,7 +101,7 @@ fn a_denoiser_that_is_not_there_is_an_error_that_says_how_to_get_it() {
     assert!(!folder.path().join("a.png").exists());
 }
 
-/// What a default picture says about denoising if `python3` is a script that prints `printed`, and nothing else is
+/// Messages about denoising of a default picture if `python3` is a script that prints `printed`, and nothing else is
 /// installed.
 #[cfg(unix)]
 fn said_with_python(folder: &Path, printed: &str) -> String {

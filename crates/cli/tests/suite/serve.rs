@@ -110,7 +110,7 @@ fn what_cannot_be_watched_is_refused() {
     }
 }
 
-/// What needs no file is named in the help of each command that surrounds a scene.
+/// Surroundings that need no file are named in the help of each command that surrounds a scene.
 #[test]
 fn surroundings_of_the_table_are_in_the_help() {
     for command in ["render", "serve", "explain"] {

@@ -1,5 +1,5 @@
-//! What a server relies on: parts that are complete or refused, an end within two seconds wherever it is, limits of memory that
-//! give a message, and a sandbox that a link does not lead out of.
+//! Guarantees that a server relies on: parts that are complete or refused, an end within two seconds wherever the work is, limits of
+//! memory that give a message, and a sandbox that a link does not lead out of.
 #![cfg(unix)]
 
 use crate::hang_up;
@@ -50,7 +50,7 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// What is left beside pictures that nobody asked for.
+/// Files beside pictures that nobody asked for.
 fn left_over(folder: &Path) -> Vec<String> {
     let is_left = |name: &String| name.ends_with(".part") || name.contains(".checkpoint");
     names(folder).into_iter().filter(is_left).collect()
@@ -161,7 +161,7 @@ fn signalled_when(folder: &Path, line: &str, file: &str, name: &str) -> (i32, St
     of(child.wait_with_output().unwrap())
 }
 
-/// What comes after a picture is stopped, but the picture is there, and the line says so.
+/// A signal stops what comes after a picture, but the picture is there, and the line says so.
 #[test]
 fn a_picture_that_is_written_is_no_failure_whatever_ends_the_rest() {
     let folder = folder();
@@ -199,7 +199,7 @@ fn a_terminal_that_closes_ends_it_as_ctrl_c_does_but_not_under_nohup() {
     drop(scene);
 }
 
-/// What ends it when memory runs out is no shield against others who end it.
+/// The handler that ends the process when memory runs out is no shield against others who end it.
 #[test]
 fn sigabrt_ends_it_as_it_does_every_program() {
     let folder = folder();

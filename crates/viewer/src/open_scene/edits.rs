@@ -7,7 +7,7 @@ use bilux::{Edit, Error, Session};
 /// The maximum number of edits that can be undone.
 const STEPS: usize = 200;
 
-/// What was edited, before and after.
+/// Edit of a parameter, with the part before and after.
 struct Step {
     part: Part,
     number: usize,

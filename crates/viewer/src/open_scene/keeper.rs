@@ -20,7 +20,7 @@ pub(crate) struct Keeper {
     pub(super) session: Session,
     /// The scene as it was opened.
     pub(super) unedited: SceneBuilder,
-    /// What was opened, and how.
+    /// The choices with which the scene was opened.
     pub(super) opening: Opening,
     /// The time in seconds that the scene was opened at.
     pub(super) first_time: f32,

@@ -1,4 +1,4 @@
-//! What visitors ask of the scene, until the thread that keeps it takes it. However much they ask for, it takes a bounded
+//! Requests of visitors to the scene, kept until the thread of the scene takes them. However many there are, they take a bounded
 //! amount of memory: a later value of a parameter replaces one that still waits.
 
 use crate::inbox::Inbox;
@@ -40,7 +40,7 @@ impl Mail {
         Ok(())
     }
 
-    /// What waits, in order, as soon as there is something; nothing once it has ended.
+    /// Takes what waits, in order, as soon as there is something or the mail has ended.
     pub(super) fn take(&self) -> Vec<Sent> {
         let is_idle = |waiting: &mut Vec<Sent>| waiting.is_empty() && !self.has_ended();
         let mut waiting = self.bell.wait_while(self.lock(), is_idle).unwrap_or_else(PoisonError::into_inner);

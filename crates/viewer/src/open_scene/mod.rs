@@ -27,9 +27,9 @@ pub(crate) struct Version {
     pub(crate) scene: SceneBuilder,
     /// The scene as it was opened.
     pub(crate) unedited: SceneBuilder,
-    /// What is built of it.
+    /// The parts that are built of it.
     pub(crate) built: Built,
-    /// How it was opened.
+    /// The choices with which it was opened.
     pub(crate) opening: Opening,
     /// The time that is shown, if a visitor has set it.
     pub(crate) time: Option<Value>,
@@ -37,7 +37,7 @@ pub(crate) struct Version {
     pub(crate) words: Vec<String>,
     /// The name of its file.
     pub(crate) title: String,
-    /// What was edited.
+    /// The changes that the edits have made.
     pub(crate) changes: Vec<Change>,
     pub(crate) can_undo: bool,
     pub(crate) can_redo: bool,
@@ -45,7 +45,7 @@ pub(crate) struct Version {
     _kept: Option<Arc<Kept>>,
 }
 
-/// What all visitors know of the scene.
+/// Open scene, as all visitors know it.
 #[derive(Default)]
 pub(crate) struct OpenScene {
     mail: Mail,

@@ -1,6 +1,6 @@
-//! Who may reach the server.
+//! Access to the server.
 //!
-//! On the loopback interface every program of this machine may, browsers included, and with them any page that they show.
+//! On the loopback interface every program of this machine has access, browsers included, and with them any page that they show.
 //! So a request must name this very server in `Host`: a page whose own name was made to point here (DNS rebinding) names
 //! another one. What connects must have the same origin as the page: browsers say the origin, and cannot be made to lie.
 //! Anywhere else the address has a random token in it, without which there is nothing to see.
@@ -14,7 +14,7 @@ use axum::middleware::{Next, from_fn};
 use axum::response::IntoResponse;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, UdpSocket};
 
-/// What every answer says: nothing from elsewhere, nobody's frame, nothing kept, no address given away.
+/// Headers of every answer: nothing from elsewhere, nobody's frame, nothing kept, no address given away.
 const HEADERS: &[(&str, &str)] = &[
     (
         "content-security-policy",
@@ -29,7 +29,7 @@ const HEADERS: &[(&str, &str)] = &[
     ("cache-control", "no-store"),
 ];
 
-/// What a request has to know.
+/// Address and token that a request has to know.
 #[derive(Clone)]
 pub(super) struct Guard {
     address: SocketAddr,
@@ -56,7 +56,7 @@ impl Guard {
         format!("http://{shown}{}/", self.prefix())
     }
 
-    /// What every path begins with.
+    /// Beginning of every path.
     pub(super) fn prefix(&self) -> String {
         self.token.as_ref().map_or_else(String::new, |token| format!("/{token}"))
     }

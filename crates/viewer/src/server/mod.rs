@@ -32,10 +32,10 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use tokio::sync::oneshot;
 
-/// How often the server looks whether it is to end.
+/// Interval at which the server looks whether it is to end.
 const LOOKS: Duration = Duration::from_millis(50);
 
-/// How long it waits for its threads in the end. Some work cannot be stopped in the middle; nothing is lost with it.
+/// Time that the server waits for its threads in the end. Some work cannot be stopped in the middle; nothing is lost with it.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// A viewer that listens, and renders as soon as somebody watches.

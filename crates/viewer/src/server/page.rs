@@ -5,7 +5,7 @@ use axum::response::{IntoResponse, Response};
 
 /// A file of the page.
 pub(super) struct File {
-    /// Its path; the page itself has none.
+    /// The path of the file; the page itself has none.
     pub(super) path: &'static str,
     kind: &'static str,
     bytes: &'static [u8],

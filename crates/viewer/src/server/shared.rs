@@ -1,4 +1,4 @@
-//! What all connections share.
+//! State that all connections share.
 
 use crate::open_scene::OpenScene;
 use crate::visitors::Visitors;

@@ -25,7 +25,7 @@ impl Stage {
         self.choose_denoiser().map_err(|error| error.to_string())
     }
 
-    /// What the other picture is of has changed.
+    /// Notes that the settings of the other picture, or also its scene, have changed.
     pub(super) fn other_is_out_of_date(&mut self, by_scene: bool) {
         if let Some(it) = &mut self.comparison {
             it.is_out_of_date(by_scene);

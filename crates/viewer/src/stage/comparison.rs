@@ -14,9 +14,9 @@ use bilux::{Budget, Edit, Error, Outcome, Session};
 use serde_json::{Value, json};
 use std::time::{Duration, Instant};
 
-/// How often the other picture is shown, and the two are compared.
+/// Interval at which the other picture is shown, and the two are compared.
 const SHOWN_EVERY: Duration = Duration::from_millis(400);
-/// How often the map of differences is made, which takes long.
+/// Interval at which the map of differences is made, which takes long.
 const MAPPED_EVERY: Duration = Duration::from_millis(1500);
 /// The largest number of its pixels: the map takes about 0.2 s then, and nothing interrupts it.
 const MAPPED_PIXELS: usize = 250_000;
@@ -27,7 +27,7 @@ pub(super) struct Comparison {
     /// Show where the two differ.
     differences: bool,
     session: Option<Session>,
-    /// What denoises it.
+    /// The denoiser of the other picture.
     denoiser: Option<DenoiserChoice>,
     /// Whether its session is that of the scene and the settings that are shown.
     is_current: bool,
@@ -64,17 +64,17 @@ impl Comparison {
         }
     }
 
-    /// What is compared.
+    /// Picture that is compared with.
     pub(super) fn other(&self) -> &Other {
         &self.other
     }
 
-    /// What is known of the picture that was made last.
+    /// Facts of the picture that was made last.
     pub(super) fn facts(&self) -> &Facts {
         &self.facts
     }
 
-    /// What is compared, for the page.
+    /// Comparison in JSON, for the page.
     pub(super) fn state(&self) -> Value {
         match &self.other {
             Other::Setting(key, value) => {
@@ -110,7 +110,7 @@ impl Comparison {
         (self.last_shown, self.is_shown) = (Instant::now(), true);
     }
 
-    /// What it is of has changed: the settings, or also the scene.
+    /// Notes that the settings, or also the scene, have changed.
     pub(super) fn is_out_of_date(&mut self, by_scene: bool) {
         self.is_current = false;
         // An edit changes nothing before it.
@@ -245,7 +245,7 @@ fn map_of(a: &Picture, b: &Picture, options: &WriteOptions) -> Result<Picture, E
     Ok(heat_map(&pair, HeatMap::Flip)?)
 }
 
-/// How far two pictures are from each other, relative to their light; and a map of that, as people see it, if wanted.
+/// Distance of two pictures, relative to their light; and a map of their differences, as people see them, if wanted.
 fn differences(
     a: &Picture,
     b: &Picture,

@@ -17,16 +17,16 @@ pub(super) struct Cleaned {
     /// The denoiser.
     pub(super) by: &'static str,
     pub(super) result: Picture,
-    /// How long it took.
+    /// The time that denoising took.
     pub(super) time: Duration,
 }
 
 /// A picture that is being denoised, on a thread of its own.
 pub(super) struct Denoising {
     pub(super) result: Receiver<Result<Picture, Error>>,
-    /// What was known of the picture when it began.
+    /// The facts of the picture when denoising began.
     pub(super) facts: Facts,
-    /// What had changed by then.
+    /// The number of changes by then.
     pub(super) changes: u64,
     pub(super) by: &'static str,
     pub(super) begun: Instant,
@@ -69,11 +69,11 @@ impl Denoising {
     }
 }
 
-/// What denoises the pictures of a view.
+/// Denoisers of the pictures of a view.
 pub(super) struct Denoisers {
-    /// What the settings ask for.
+    /// The denoiser that the settings ask for.
     pub(super) chosen: Option<DenoiserChoice>,
-    /// What denoises small previews.
+    /// The denoiser of small previews.
     pub(super) for_previews: DenoiserChoice,
     /// The picture that is being denoised.
     pub(super) work: Option<Denoising>,
@@ -112,7 +112,7 @@ impl Denoisers {
         self.cleaned.as_ref().filter(is_same).map(|it| it.samples)
     }
 
-    /// What was denoised, if that is done.
+    /// Takes the denoised picture, or what went wrong, if that is done.
     pub(super) fn take(&mut self) -> Option<(Denoising, Result<Picture, Error>)> {
         let received = self.work.as_ref()?.result.try_recv();
         if matches!(received, Err(TryRecvError::Empty)) {

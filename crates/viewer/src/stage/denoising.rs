@@ -40,7 +40,7 @@ impl Stage {
         Ok(())
     }
 
-    /// What a denoiser has to know.
+    /// Task for a denoiser.
     fn task(&self) -> Task {
         let threads = self.session.job().settings().threads;
         Task { threads, sandboxed: self.common.sandboxed, ..Task::default() }

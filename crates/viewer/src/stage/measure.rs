@@ -1,4 +1,4 @@
-//! How fast each accelerator is in the scene: its rays a second, and its work for a ray, beside those of the others.
+//! Speed of each accelerator in the scene: its rays a second, and its work for a ray, beside those of the others.
 
 use super::visits::ray;
 use crate::common::Common;
@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 const ACROSS: usize = 160;
 const DOWN: usize = 90;
 
-/// How long each accelerator traces rays.
+/// Time for which each accelerator traces rays.
 const TIME: Duration = Duration::from_millis(250);
 
 /// The number of rays whose work is counted.
@@ -88,7 +88,7 @@ impl Drop for Measurement {
     }
 }
 
-/// What one accelerator does, or why it was not measured.
+/// Measurement of one accelerator, or the reason why it was not measured.
 fn one(
     scene: &SceneBuilder,
     choice: &AccelChoice,

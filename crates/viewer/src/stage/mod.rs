@@ -45,14 +45,14 @@ use std::sync::Arc;
 use std::time::Duration;
 use viewpoint::Viewpoint;
 
-/// How often it looks whether a measurement is over.
+/// Interval at which the stage looks whether a measurement is over.
 const LOOKS: Duration = Duration::from_millis(30);
 
 /// The render of a view.
 pub(crate) struct Stage {
     common: Arc<Common>,
     inbox: Arc<Inbox>,
-    /// Its number among all views.
+    /// The number of the view among all views.
     number: u64,
     /// The version of the scene that is shown.
     version: Arc<Version>,
@@ -159,7 +159,7 @@ impl Stage {
         !self.awaits_turn && !self.questions.are_measured() && is_needed
     }
 
-    /// How long it may wait for requests; `None` for as long as there is none.
+    /// Time for which the stage may wait for requests; `None` for as long as there is none.
     fn may_wait(&self) -> Option<Duration> {
         match self.refinement.rests && !self.is_turn_of_other() || !self.is_watched() || self.awaits_turn {
             _ if self.questions.has_measurement() => Some(LOOKS),

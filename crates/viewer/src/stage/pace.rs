@@ -1,22 +1,22 @@
-//! How small the pictures are that are shown while the camera moves, so that each of them is there soon.
+//! Sizes of the pictures that are shown while the camera moves, so small that each picture is there soon.
 
 use crate::settings::divided;
 use std::time::Duration;
 
-/// How long one of these pictures may take.
+/// Maximum time for one of these pictures.
 const SOON: Duration = Duration::from_millis(40);
 
-/// How long the first samples of a clean picture may take, and how many they are at least.
+/// Maximum time for the first samples of a clean picture, and their minimum number.
 const CLEAN: Duration = Duration::from_millis(450);
 const CLEAN_SAMPLES: f64 = 4.0;
 
-/// How long a clean picture may stay until the one in full size is there, if there can be a larger one between them.
+/// Maximum time until a clean picture is replaced by the one in full size, if there can be a larger one between them.
 const PATIENCE: Duration = Duration::from_secs(2);
 
 /// The maximum divisor of width and height.
 const SMALLEST: u32 = 16;
 
-/// What pictures have taken so far.
+/// Times that pictures have taken so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pace {
     /// Seconds for a sample of a pixel.

@@ -35,7 +35,7 @@ fn shown_segment(segment: &PathSegment) -> Value {
     })
 }
 
-/// What the page calls a kind of vertex.
+/// Name of a kind of vertex on the page.
 fn name(kind: VertexKind) -> &'static str {
     match kind {
         VertexKind::Surface => "surface",

@@ -1,4 +1,4 @@
-//! What is at a pixel, and how light gets there.
+//! Surface at a pixel, and how light gets there.
 
 use super::json::value_json;
 use super::paths;
@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 /// The number of samples whose mean and 95% interval are shown.
 const SAMPLES: u32 = 256;
 
-/// What is at a place of the picture, as fractions of its width and height, and this many paths of light that reach it.
+/// Surface at a place of the picture, as fractions of its width and height, and this many paths of light that reach it.
 ///
 /// # Errors
 /// If the integrator fails there.

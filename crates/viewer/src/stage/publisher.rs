@@ -1,4 +1,4 @@
-//! What those who watch are told: frames, the state of the view, and how far the picture is.
+//! Publisher of what those who watch are told: frames, the state of the view, and how far the picture is.
 
 use crate::frame::{Facts, Frame};
 use bilux::Error;
@@ -8,10 +8,10 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tokio::sync::watch;
 
-/// How often it is said how far the picture is.
+/// Interval at which the progress of the picture is published.
 const PROGRESS_EVERY: Duration = Duration::from_millis(250);
 
-/// Where frames and the state of the stage are published: all who watch see the newest of each.
+/// Channels on which frames and the state of the stage are published: all who watch see the newest of each.
 pub(crate) struct Outlets {
     /// The newest frame.
     pub(crate) frames: watch::Sender<Option<Arc<Frame>>>,
@@ -19,7 +19,7 @@ pub(crate) struct Outlets {
     pub(crate) other: watch::Sender<Option<Arc<Frame>>>,
     /// The newest state, in JSON.
     pub(crate) state: watch::Sender<Arc<str>>,
-    /// How far the picture is, in JSON.
+    /// The newest progress of the picture, in JSON.
     pub(crate) progress: watch::Sender<Arc<str>>,
 }
 
@@ -38,9 +38,9 @@ pub(super) struct Publisher {
     frame: u64,
     last_shown: Instant,
     last_progress: Instant,
-    /// What went wrong, for the page.
+    /// The problem, if something went wrong, for the page.
     pub(super) problem: Option<String>,
-    /// How many times requests were served: the state says so, and each time is another state.
+    /// The number of times that requests were served: the state says so, and each time is another state.
     pub(super) served: u64,
 }
 
@@ -94,7 +94,7 @@ impl Publisher {
         self.outlets.other.send_replace(frame);
     }
 
-    /// How long ago a frame of the picture was shown.
+    /// Time since a frame of the picture was shown.
     pub(super) fn since_shown(&self) -> Duration {
         self.last_shown.elapsed()
     }

@@ -1,4 +1,4 @@
-//! What those who watch ask about the picture, and what is measured for them.
+//! Questions of those who watch about the picture, and what is measured for them.
 
 use super::measure::Measurement;
 use crate::inbox::QUESTIONS;

@@ -1,4 +1,4 @@
-//! How far a picture is on its way from small previews to the picture in full size.
+//! Progress of a picture from small previews to the picture in full size.
 
 use super::pace::Pace;
 use crate::frame::Facts;
@@ -7,7 +7,7 @@ use bilux::Outcome;
 use bilux::transport::NoiseMeter;
 use std::time::{Duration, Instant};
 
-/// How far a picture is, and how fast it comes about.
+/// Progress of a picture, and how fast it comes about.
 pub(super) struct Refinement {
     pub(super) level: Level,
     /// When something last changed, and how many times.
@@ -15,7 +15,7 @@ pub(super) struct Refinement {
     pub(super) changes: u64,
     pub(super) pace: Pace,
     meter: NoiseMeter,
-    /// What is known of the picture that was shown last.
+    /// The facts of the picture that was shown last.
     pub(super) facts: Facts,
     /// Whether nothing is to be done until something changes.
     pub(super) rests: bool,

@@ -1,4 +1,4 @@
-//! How a picture comes about: small and soon at first, then clean in half the size, then in full size, refined.
+//! Refinement of a picture: small and soon at first, then clean in half the size or less, then in full size, refined.
 
 use super::Stage;
 use super::show::{FOR_DENOISERS, Shown};
@@ -10,16 +10,16 @@ use bilux::transport::aovs::Aov;
 use bilux::{Budget, Edit, Error, Outcome, Settings};
 use std::time::{Duration, Instant};
 
-/// How often a picture that gets better is shown.
+/// Interval at which a picture that gets better is shown.
 const SHOWN_EVERY: Duration = Duration::from_millis(250);
-/// How long nothing has changed when the picture itself is begun: some integrators then choose their strategies first.
+/// Time without changes after which the picture itself is begun: some integrators then choose their strategies first.
 const SETTLED: Duration = Duration::from_millis(180);
-/// How long samples are taken for the clean picture of half the size, after the last change, and how many at most.
+/// Time after the last change for which samples are taken for a clean picture, and their maximum number.
 const CLEAN: Duration = Duration::from_millis(600);
 const CLEAN_SAMPLES: u32 = 16;
-/// How much more time the samples take than denoising them does.
+/// Time of the samples, at least, as a multiple of that of denoising them.
 const SHARE: u32 = 4;
-/// How often a picture that is denoised is shown.
+/// Interval at which a picture that is denoised is shown.
 const CLEANED_EVERY: Duration = Duration::from_secs(2);
 
 impl Stage {
@@ -213,7 +213,7 @@ impl Stage {
         }
     }
 
-    /// What is known of the picture as it is.
+    /// Facts of the picture as it is.
     fn facts_of(&self, outcome: &Outcome) -> Facts {
         let (job, samples) = (self.session.job(), self.session.samples());
         let point = |p: bilux::math::DVec3| p.to_array();

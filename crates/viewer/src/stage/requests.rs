@@ -1,4 +1,4 @@
-//! What those who watch ask of their view: moves, settings, layers.
+//! Requests of those who watch to their view: moves, settings, layers.
 
 use super::Stage;
 use super::show::Shown;

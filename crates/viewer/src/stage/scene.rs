@@ -1,4 +1,4 @@
-//! What becomes of a view when the scene changes, or the shape of the window.
+//! Changes of a view when the scene changes, or the shape of the window.
 
 use super::Stage;
 use crate::eye::Eye;
@@ -58,7 +58,7 @@ impl Stage {
         }
     }
 
-    /// Where the scene has its camera in a window of this shape.
+    /// Camera of the scene in a window of this shape.
     pub(super) fn home(&self) -> Option<Eye> {
         let mut asked = settings::with_defaults(&settings::at_time(&self.user, self.version.time.as_ref()));
         let scene = self.session.scene();

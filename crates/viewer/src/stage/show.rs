@@ -1,4 +1,4 @@
-//! What is shown: the picture, denoised or not, or one of its layers as colours.
+//! Picture that is shown: denoised or not, or one of its layers as colours.
 
 use super::visits;
 use crate::catalogue::{LAYERS, VISITS};
@@ -13,7 +13,7 @@ use bilux::{Error, Job, Outcome, Surfaces};
 /// The layers that denoisers look at.
 pub(super) const FOR_DENOISERS: [Aov; 4] = [Aov::Albedo, Aov::Normal, Aov::Depth, Aov::Variance];
 
-/// What is shown.
+/// Kind of picture that is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Shown {
     /// The picture.
@@ -25,7 +25,7 @@ pub(super) enum Shown {
 }
 
 impl Shown {
-    /// What has this name: `picture`, a layer of [`AOVS`], or [`VISITS`].
+    /// Kind of this name: `picture`, a layer of [`AOVS`], or [`VISITS`].
     pub(super) fn named(name: &str) -> Option<Shown> {
         match name {
             "picture" => return Some(Shown::Picture),
@@ -36,7 +36,7 @@ impl Shown {
         Some(Shown::Layer(row.aov))
     }
 
-    /// Its name.
+    /// Name of the kind.
     pub(super) fn name(self) -> &'static str {
         match self {
             Shown::Picture => "picture",

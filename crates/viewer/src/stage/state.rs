@@ -1,4 +1,4 @@
-//! What the page knows of the scene and of its settings.
+//! State of the scene and of its settings, for the page.
 
 use super::Stage;
 use super::comparison::Comparison;
@@ -68,7 +68,7 @@ fn state(stage: &Stage) -> Value {
     })
 }
 
-/// How far the picture is, and the one that it is compared with, for the page.
+/// Progress of the picture, and of the one that it is compared with, for the page.
 fn progress(stage: &Stage) -> Value {
     let (session, level) = (&stage.session, stage.refinement.level);
     let other = stage
@@ -143,7 +143,7 @@ fn parts(stage: &Stage) -> Value {
     Part::ALL.into_iter().map(|part| (part.name().to_owned(), all(part))).collect::<Map<_, _>>().into()
 }
 
-/// How long the scene moves; nothing if it does not.
+/// Seconds for which the scene moves; nothing if it does not.
 fn seconds(scene: &SceneBuilder) -> Option<f32> {
     let end = |object: &Object| object.motion.keys().last().map(|key| key.time_seconds);
     let of_objects = scene.objects.iter().filter_map(end);

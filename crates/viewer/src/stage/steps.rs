@@ -4,7 +4,7 @@ use crate::inbox::Inbox;
 use bilux::transport::Progress;
 use std::time::Duration;
 
-/// How long a step of the picture takes: then requests are looked at.
+/// Time that a step of the picture takes: then requests are looked at.
 pub(super) const STEP: Duration = Duration::from_millis(60);
 
 /// Stops a step whose picture is out of date.

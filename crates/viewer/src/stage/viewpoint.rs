@@ -1,4 +1,4 @@
-//! Where a view looks from, and the size of its pictures.
+//! Camera of a view, and the size of its pictures.
 
 use crate::eye::{Eye, own_bounds, point_at};
 use crate::message::Move;
@@ -8,9 +8,9 @@ use bilux::{Job, Session};
 /// The camera of a view, which those who watch move, and the size of its pictures.
 #[derive(Clone, Copy)]
 pub(super) struct Viewpoint {
-    /// Where the scene has its camera.
+    /// The camera where the scene has it.
     pub(super) home: Option<Eye>,
-    /// Where the camera is now.
+    /// The camera where it is now.
     pub(super) eye: Option<Eye>,
     /// Whether it is where it was moved to.
     pub(super) is_moved: bool,

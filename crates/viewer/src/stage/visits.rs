@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 /// The work at the upper end of the scale, which is logarithmic and the same for all accelerators.
 const MOST: f32 = 65_536.0;
 
-/// How long it may take: a slow accelerator is shown in coarse squares.
+/// Time that the heat map may take: a slow accelerator is shown in coarse squares.
 const TIME: Duration = Duration::from_millis(300);
 
 /// The sides of the coarsest squares, in pixels.

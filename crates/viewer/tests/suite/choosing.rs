@@ -1,4 +1,4 @@
-//! What is chosen of a model: its animation, its variant, the light around it, and the time.
+//! Choices of a model: its animation, its variant, the light around it, and the time.
 
 use crate::common::{Client, Frame, Viewer, cornell, options, run};
 use bilux::scene::{Animation, SceneBuilder};

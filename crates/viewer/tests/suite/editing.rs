@@ -158,7 +158,7 @@ fn a_file_that_is_dropped_in_is_opened_and_a_broken_one_leaves_the_picture() {
     });
 }
 
-/// What was said of the camera is about the scene that it was said of: another one may have no such camera.
+/// Settings of the camera are about the scene that they were made for: another one may have no such camera.
 #[test]
 fn another_file_is_seen_by_its_own_camera() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! What is in the picture stays in it: a drag begins where the picture was, in windows of any shape.
+//! Framing that is kept: a drag begins where the picture was, in windows of any shape.
 
 use crate::common::{Client, Frame, Viewer, options, run};
 use bilux::math::{DVec3, Vec3};

@@ -1,4 +1,4 @@
-//! How a picture comes about: clean at once, never uglier than before, and in the end that of the command line.
+//! Refinement of a picture: clean at once, never uglier than before, and in the end that of the command line.
 
 use crate::common::{Client, Frame, Viewer, cornell, get, options, run};
 use bilux::pictures::{Limits, Picture, read_bytes, write_bytes};

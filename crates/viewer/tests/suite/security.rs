@@ -1,4 +1,4 @@
-//! Who may watch, and what no browser can do to a viewer.
+//! Access to a viewer, and what no browser can do to it.
 
 use crate::common::{Client, Frame, Said, Viewer, cornell, get, options, run};
 use bilux_viewer::{Options, Server, ViewerError};

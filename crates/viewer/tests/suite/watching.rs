@@ -1,4 +1,4 @@
-//! What those who watch see: frames that get better, moves of the camera, settings, layers, picked pixels, files.
+//! Views of those who watch: frames that get better, moves of the camera, settings, layers, picked pixels, files.
 
 use crate::common::{Client, Frame, Viewer, cornell, get, options, run};
 use bilux::pictures::{Limits, read_bytes};

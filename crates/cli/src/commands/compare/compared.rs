@@ -15,7 +15,7 @@ pub(super) const TROUBLE: u8 = 2;
 
 /// Two pictures, and how they differ.
 pub(super) struct Compared {
-    /// What people call them.
+    /// The name that people call them by.
     pub(super) name: String,
     pub(super) picture: Picture,
     pub(super) reference: Picture,
@@ -41,7 +41,7 @@ impl Compared {
         Ok(Compared { name: name.to_owned(), picture, reference, report })
     }
 
-    /// Where they differ.
+    /// Map of where they differ.
     pub(super) fn heat_map(&self) -> anyhow::Result<Picture> {
         let pair = Pair::new(&self.picture, &self.reference, 0.0, &TONEMAPS[0])?;
         Ok(heat_map(&pair, HeatMap::Flip)?)

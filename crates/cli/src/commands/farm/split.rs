@@ -60,7 +60,7 @@ impl Split {
         }
     }
 
-    /// What the tasks do together, in a few words.
+    /// Work that the tasks do together, in a few words.
     pub(super) fn describe(&self) -> &'static str {
         match self {
             Split::Frames(_) => "the frames",

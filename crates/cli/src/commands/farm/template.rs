@@ -58,7 +58,7 @@ pub(super) fn of(job: &FarmJob) -> anyhow::Result<String> {
 /// Tells the scheduler how far a task is.
 const PROGRESS: &str = "--progress=openjd";
 
-/// What a scheduler may set. Paths are relative to the template.
+/// Parameters that a scheduler may set. Paths are relative to the template.
 const PARAMETERS: &str = "parameterDefinitions:
   - name: Bilux
     type: STRING
@@ -78,7 +78,7 @@ const PARAMETERS: &str = "parameterDefinitions:
     description: The folder for the finished pictures.
 ";
 
-/// The same, for a picture that is merged.
+/// Another parameter, for a picture that is merged.
 const PARTS: &str = "  - name: Parts
     type: PATH
     objectType: DIRECTORY

@@ -4,7 +4,7 @@
 use crate::commands::sandbox_paths::SandboxPaths;
 use std::path::{Path, PathBuf};
 
-/// What a process in a sandbox has, or what a job in one needs.
+/// Permissions that a process in a sandbox has, or that a job in one needs.
 #[derive(Clone, Debug)]
 pub struct Confines {
     read: Vec<Place>,
@@ -22,7 +22,7 @@ struct Place {
 }
 
 impl Confines {
-    /// Those for these files and folders. What is not there needs no permission.
+    /// Permissions for these files and folders. What is not there needs none.
     pub fn of(paths: &SandboxPaths, may_denoise: bool) -> Confines {
         let (read, write) = paths.places();
         Confines { read: read.filter_map(Place::of).collect(), write: write.and_then(Place::of), may_denoise }
@@ -35,7 +35,7 @@ impl Confines {
             && job.read.iter().all(|needed| self.read.iter().any(|own| own.contains(needed)))
     }
 
-    /// What a process with this has when it has also entered the sandbox of a job that it covers.
+    /// Permissions of a process with these when it has also entered the sandbox of a job that they cover.
     pub fn then(&self, job: &Confines) -> Confines {
         Confines { may_denoise: self.may_denoise, ..job.clone() }
     }

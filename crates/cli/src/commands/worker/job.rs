@@ -28,7 +28,7 @@ const REFUSED: [&str; 11] = [
     "watch",
 ];
 
-/// What a job may take, at most, and how it is read.
+/// Limits of what a job may take, and how it is read.
 pub struct Limits {
     timeout: Option<Duration>,
     max_memory: u64,
@@ -39,13 +39,13 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Those that the command line sets.
+    /// Limits that the command line sets.
     pub fn of(arguments: &Worker, common: &Common) -> Limits {
         let Common { max_memory, sandbox, strict, allow_outside, verbose, .. } = *common;
         Limits { timeout: arguments.timeout, max_memory, sandbox, strict, allow_outside, verbose }
     }
 
-    /// What a job asked for beyond them.
+    /// Requests of a job that go beyond them.
     fn in_vain(&self, timeout: Option<Duration>, memory: Option<u64>, sandbox: Option<bool>) -> Vec<String> {
         let longer = timeout.zip(self.timeout).filter(|(own, most)| own > most);
         let longer = longer.map(|(own, most)| {
@@ -67,7 +67,7 @@ impl Limits {
     }
 }
 
-/// What is rendered, where to, and within which limits.
+/// Job: what is rendered, where to, and within which limits.
 #[derive(Debug)]
 pub struct Job {
     /// Whatever the job said, for its result.
@@ -78,7 +78,7 @@ pub struct Job {
     pub timeout: Option<Duration>,
     /// The command line.
     pub command: Vec<String>,
-    /// What it needs in its sandbox, if it is to be in one.
+    /// The permissions that it needs in its sandbox, if it is to be in one.
     pub confines: Option<Confines>,
     /// Limits that it asked for and does not get, since the worker's are tighter: each is a sentence.
     pub in_vain: Vec<String>,
@@ -145,7 +145,7 @@ impl Job {
     }
 }
 
-/// What the sandbox of a render has to contain, if it is to be in one.
+/// Permissions that the sandbox of a render has to contain, if it is to be in one.
 fn needed(command: &[String]) -> Result<Option<Confines>, String> {
     let Arguments { common, command, .. } =
         Arguments::try_parse_from(command).map_err(|error| first_line(&error))?;

@@ -8,17 +8,17 @@ use std::time::Duration;
 /// The longest line of a job, in bytes.
 pub const LONGEST: usize = 1 << 20;
 
-/// How often a signal is looked for.
+/// Interval at which a signal is looked for.
 const EVERY: Duration = Duration::from_millis(50);
 
 /// One line.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Line {
-    /// Its text, without the end of the line.
+    /// The text of a line, without its end.
     Text(String),
-    /// Its text is no UTF-8.
+    /// A line that is no UTF-8.
     NoText,
-    /// It has more than [`LONGEST`] bytes.
+    /// A line of more than [`LONGEST`] bytes.
     TooLong,
 }
 

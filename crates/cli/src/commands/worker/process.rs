@@ -11,13 +11,13 @@ use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
-/// How often the time and signals are looked at while a job is rendered.
+/// Interval at which the time and signals are looked at while a job is rendered.
 const EVERY: Duration = Duration::from_millis(20);
 
-/// How long a process may take to end once it is asked to, which is a little longer than it gives itself.
+/// Time that a process may take to end once it is asked to, which is a little longer than it gives itself.
 const GRACE: Duration = signals::GRACE.saturating_add(Duration::from_millis(100));
 
-/// How many jobs one process takes in a sandbox: the kernel allows no more than 16 of them on top of each other.
+/// Number of jobs that one process takes in a sandbox: the kernel allows no more than 16 sandboxes on top of each other.
 const JOBS_IN_SANDBOX: u32 = 12;
 
 /// Why a job was stopped, as the status of a command that is.
@@ -28,18 +28,18 @@ pub struct Process {
     child: Child,
     jobs: Option<ChildStdin>,
     answers: Receiver<String>,
-    /// What its sandbox leaves it, if it is in one.
+    /// The permissions that its sandbox leaves it, if it is in one.
     confines: Option<Confines>,
     done: u32,
 }
 
-/// How a job ended.
+/// Ending of a job.
 pub struct Ending {
     /// As that of `bilux render`.
     pub status: u8,
     /// Why it failed.
     pub error: Option<String>,
-    /// What `bilux render --json` says about each picture.
+    /// The line of `bilux render --json` for each picture.
     pub pictures: Vec<Value>,
     /// Whether the process can take another job.
     pub is_alive: bool,
@@ -157,7 +157,7 @@ impl Stop<'_> {
         }
     }
 
-    /// How a job ended: with the status and the error that the process says, or with the process itself.
+    /// Ending of a job: with the status and the error that the process says, or with the process itself.
     fn ending(&self, how: Result<(u8, Option<&str>), Option<ExitStatus>>, said: Vec<Value>) -> Ending {
         let (failures, pictures): (Vec<Value>, Vec<Value>) =
             said.into_iter().partition(|line| line.get("error").is_some());
@@ -186,7 +186,7 @@ impl Stop<'_> {
     }
 }
 
-/// What is known of the end of a process.
+/// Message about the end of a process, as far as it is known.
 fn died(status: Option<ExitStatus>) -> String {
     let how = status.map_or_else(|| "for a reason unknown".to_owned(), |status| status.to_string());
     format!(

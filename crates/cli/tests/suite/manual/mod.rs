@@ -24,7 +24,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// What came of a page's commands.
+/// Outcome of a page's commands.
 #[derive(Default)]
 struct Outcome {
     run: usize,

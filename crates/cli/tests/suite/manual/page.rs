@@ -1,4 +1,4 @@
-//! What a page says to do: its commands, the files that it has readers write, and what the test has to know about them.
+//! Steps of a page: its commands, the files that it has readers write, and what the test has to know about them.
 //!
 //! Hidden comments, each before the block that it is about, or on a line of its own:
 //!
@@ -28,7 +28,7 @@ pub(crate) struct Step {
     pub(crate) action: Action,
 }
 
-/// What a comment says about the next block.
+/// Comment on the next block.
 #[derive(Default)]
 struct Next {
     skip: Option<String>,

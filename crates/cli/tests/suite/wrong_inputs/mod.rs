@@ -15,7 +15,7 @@ use tempfile::TempDir;
 
 /// One wrong input or command line.
 struct Case {
-    /// What is wrong, in a few words.
+    /// The fault, in a few words.
     name: &'static str,
     /// Files that the case needs besides `triangle.obj`, which is always there.
     files: &'static [(&'static str, &'static [u8])],
@@ -77,7 +77,7 @@ impl Case {
     }
 }
 
-/// What no message may contain: values as Rust prints them, and NaN.
+/// Texts that no message may contain: values as Rust prints them, and NaN.
 const RAW: &[&str] =
     &["Some(", "Err(", "None,", "Utf8Error", "os error", "panicked", " { ", "::", "NaN", "\u{1b}", "\\u{"];
 

@@ -15,7 +15,7 @@ use tokio_tungstenite::tungstenite::client::IntoClientRequest;
 use tokio_tungstenite::tungstenite::{Error, Message};
 use tokio_tungstenite::{MaybeTlsStream, WebSocketStream};
 
-/// How long a test waits for anything.
+/// Time that a test waits for anything.
 pub(crate) const LONG: Duration = Duration::from_secs(300);
 
 /// A viewer that runs until it is dropped.
@@ -86,7 +86,7 @@ pub(crate) fn run<T>(test: impl Future<Output = T>) -> T {
     run_for(LONG, test)
 }
 
-/// The same within another time.
+/// Runs a test within another time.
 pub(crate) fn run_for<T>(time: Duration, test: impl Future<Output = T>) -> T {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
     runtime.block_on(async { tokio::time::timeout(time, test).await.expect("it takes too long") })
@@ -109,7 +109,7 @@ impl Frame {
     }
 }
 
-/// What may come from a viewer.
+/// Message of a viewer.
 #[derive(Clone, Debug)]
 pub(crate) enum Said {
     Frame(Frame),
