@@ -1,4 +1,4 @@
-//! How much of the sky each point sees: one ray per pixel from the eye, then short rays in all directions, in
+//! Fraction of the sky that each point sees: one ray per pixel from the eye, then short rays in all directions, in
 //! batches.
 //!
 //! ```text

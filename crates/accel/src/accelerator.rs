@@ -61,7 +61,7 @@ pub trait Accelerator: Send + Sync {
     fn shape(&self) -> TreeShape;
 }
 
-/// What a structure implements: each query once, generic over a [`Count`].
+/// Queries of a structure, each implemented once, generic over a [`Count`].
 pub trait Traverse: Send + Sync {
     /// See [`Accelerator::closest_hit`]. No number of a hit is a negative zero.
     fn closest<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> Option<Hit>;

@@ -34,7 +34,7 @@ const TOGETHER: usize = 16;
 pub struct Instance {
     /// The structure, in its own space.
     pub accelerator: Arc<dyn Accelerator>,
-    /// Its transform into the world, over time.
+    /// Transform of the structure into the world, over time.
     pub motion: Motion,
     /// Which rays can hit it: those that share a bit with it.
     pub mask: u32,
@@ -47,7 +47,7 @@ impl Instance {
     }
 }
 
-/// How the instances that a ray may hit are found. The answers are the same.
+/// Method of finding the instances that a ray may hit. The answers are the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum TopLevel {
     /// All of them, one after the other.

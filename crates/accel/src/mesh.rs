@@ -71,8 +71,8 @@ impl TriangleMesh {
         Ok(TriangleMesh { corners, groups: vec![whole], bounds: Some(bounds) })
     }
 
-    /// The same triangles, grouped into these objects one after the other. Only structures that are asked to keep
-    /// objects whole use the groups.
+    /// Groups the triangles into these objects, one after the other. Only structures that are asked to keep objects whole
+    /// use the groups.
     ///
     /// # Errors
     /// Returns an error when the ranges do not cover the triangles one after the other.

@@ -11,9 +11,9 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Ray {
-    /// Where it starts.
+    /// Origin of the ray.
     pub origin: [f32; 3],
-    /// Its direction.
+    /// Direction of the ray.
     pub direction: [f32; 3],
     /// Minimum `t` that counts as a hit.
     pub t_min: f32,
@@ -93,7 +93,7 @@ impl Hit {
         (b - a).cross(c - a).normalize_or_zero().as_vec3().to_array()
     }
 
-    /// The same hit, without negative zeros.
+    /// This hit without negative zeros.
     pub(crate) fn with_positive_zeros(self) -> Hit {
         // Adding zero changes no number but -0.
         Hit { t: self.t + 0.0, u: self.u + 0.0, v: self.v + 0.0, ..self }

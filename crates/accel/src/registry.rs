@@ -49,17 +49,17 @@ pub enum BuildError {
 /// Options for builders. Each builder uses only those that it knows.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct BuildOptions {
-    /// How `bsp` chooses its planes.
+    /// Rule by which `bsp` chooses its planes.
     pub bsp_split: BspSplit,
     /// Whether `bsp` keeps objects together.
     pub bsp_group: BspGroup,
-    /// How much time a builder may spend on a better structure.
+    /// Time that a builder may spend on a better structure.
     pub quality: Quality,
     /// The instruction set that kernels may use; by default, the best that the machine supports.
     pub cpu_level: CpuLevel,
 }
 
-/// How much time a builder may spend on a better structure. From lowest to highest, `bvh8` sorts along a
+/// Time that a builder may spend on a better structure. From lowest to highest, `bvh8` sorts along a
 /// space-filling curve, splits by the surface-area heuristic, or also cuts triangles and moves subtrees; `bsp-sah`
 /// evaluates planes of any orientation for no partition, for small ones, or for larger ones too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -73,7 +73,7 @@ pub enum Quality {
     Best,
 }
 
-/// How the paper's tree chooses a partition plane.
+/// Rule by which the paper's tree chooses a partition plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum BspSplit {
     /// Through the average position, with the average orientation (the paper, section 3.2).

@@ -17,7 +17,7 @@ use bilux_math::Aabb;
 pub struct SlabRay {
     /// For each axis, the coordinate from which the distance to the entry plane is measured.
     pub enter_origin: [f32; 3],
-    /// The same for the exit plane.
+    /// For each axis, the coordinate from which the distance to the exit plane is measured.
     pub leave_origin: [f32; 3],
     /// `|d_kz| / d` for each axis; its magnitude lies between 1 and 2⁴⁰.
     pub inverse: [f32; 3],

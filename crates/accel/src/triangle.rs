@@ -66,8 +66,8 @@ impl PreparedRay {
         Some(PreparedRay { ray: *ray, axes: [kx, ky, kz], shear: [d[kx] / d[kz], d[ky] / d[kz]] })
     }
 
-    /// How far every box and plane must be moved outwards so that nothing which the triangle test would accept is
-    /// skipped; `bounds` holds all vertices in question. See the lemma above.
+    /// Distance by which every box and plane must be moved outwards so that nothing which the triangle test would accept
+    /// is skipped; `bounds` holds all vertices in question. See the lemma above.
     #[inline]
     pub fn pad(&self, bounds: &Aabb) -> f32 {
         let (low, high) = (bounds.min.to_array(), bounds.max.to_array());

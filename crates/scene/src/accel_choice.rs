@@ -5,11 +5,11 @@ use bilux_accel::{BuildOptions, Query};
 /// The acceleration structure that traces the rays.
 #[derive(Clone, Debug)]
 pub struct AccelChoice {
-    /// Its name in [`bilux_accel::ACCELERATORS`], or `auto`.
+    /// Name in [`bilux_accel::ACCELERATORS`], or `auto`.
     pub name: String,
-    /// How it is built.
+    /// Options with which it is built.
     pub options: BuildOptions,
-    /// How it is traversed.
+    /// Query with which it is traversed.
     pub query: Query<'static>,
 }
 

@@ -30,7 +30,7 @@ impl Axis {
         Axis::ALL.into_iter().find(|axis| axis.name() == name)
     }
 
-    /// Its name.
+    /// Name of the axis.
     pub fn name(self) -> &'static str {
         match self {
             Axis::X => "x",
@@ -70,7 +70,7 @@ impl Axis {
 /// The up axis as stated by a file or its format.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum UpHint {
-    /// It is stated, or follows from the format.
+    /// An axis that is stated, or follows from the format.
     Is(Axis),
     /// Most files of the format use it; the shape may show that this one does not.
     Usually(Axis),

@@ -34,17 +34,17 @@ use std::sync::Arc;
 pub struct Object {
     /// The user's name for it; may be empty.
     pub name: String,
-    /// Its triangles.
+    /// Triangles of the object.
     pub mesh: Arc<Mesh>,
     /// Index into [`SceneBuilder::materials`].
     pub material: usize,
-    /// Its position and motion.
+    /// Position and motion.
     pub motion: Motion,
     /// Keep one copy of the mesh's tree, however many instances the scene has.
     ///
     /// Otherwise, and for objects that do not move, triangles go into one tree of the whole scene.
     pub instanced: bool,
-    /// What kind of thing it is, for labels, such as "chair"; empty for none.
+    /// Kind of the object, for labels, such as "chair"; empty for none.
     pub category: String,
     /// Which rays see it.
     pub visibility: Visibility,
@@ -64,7 +64,7 @@ impl Object {
         }
     }
 
-    /// The same object, transformed.
+    /// Places the object by a transform.
     pub fn placed(self, transform: Transform) -> Object {
         Object { motion: Motion::still(transform), ..self }
     }
@@ -103,7 +103,7 @@ pub struct SceneBuilder {
     pub settings: Parameters,
     /// Problems found while reading.
     pub warnings: Vec<Warning>,
-    /// What is worth knowing about the file though nothing is wrong with it, such as data that have no effect.
+    /// Remarks on the file where nothing is wrong with it, such as on data that have no effect.
     pub notes: Vec<Warning>,
     /// Other choices that the file offers.
     pub inventory: Inventory,
@@ -160,8 +160,8 @@ impl SceneBuilder {
         self.build_with(&mut BuiltParts::default(), accel, shutter, aspect)
     }
 
-    /// The same scene, made with what is known from earlier builds, and what is new is kept for later ones: trees of
-    /// what did not move, materials, lights and their tables. It does not matter which scene was built before.
+    /// Builds as [`SceneBuilder::build`] does, from what earlier builds left, and keeps what is new for later ones: trees of what
+    /// did not move, materials, lights and their tables. It does not matter which scene was built before.
     ///
     /// # Errors
     /// As for [`SceneBuilder::build`]; then `parts` stays as it was.
@@ -324,7 +324,7 @@ fn fail(message: String) -> Result<(), SceneError> {
     Err(SceneError::invalid(message, &Span::default()))
 }
 
-/// What messages call an object.
+/// Name of an object in messages.
 fn name_of(object: &Object) -> &str {
     if object.name.is_empty() { &object.mesh.name } else { &object.name }
 }

@@ -11,7 +11,7 @@ use bilux_math::registry::{Entry, ParameterKind};
 /// The maximum number of names that an error lists.
 const MAX_NAMES: usize = 100;
 
-/// What has parameters that can be changed.
+/// Part of a scene whose parameters can be changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// A row of [`SceneBuilder::materials`].
@@ -34,15 +34,15 @@ pub enum Which {
 /// A new value of a parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Change {
-    /// What is changed.
+    /// Part that is changed.
     pub part: Part,
     /// Which of them.
     pub which: Which,
     /// The parameter.
     pub key: String,
-    /// Its value. The name of a material stands for the material where the parameter is one.
+    /// New value. The name of a material stands for the material where the parameter is one.
     pub value: Value,
-    /// Where the change was written.
+    /// Place where the change was written.
     pub at: Span,
 }
 
@@ -50,7 +50,7 @@ impl Part {
     /// All of them.
     pub const ALL: [Part; 3] = [Part::Material, Part::Light, Part::Camera];
 
-    /// What files and command lines call it.
+    /// Name of the part in files and on command lines.
     pub fn name(self) -> &'static str {
         match self {
             Part::Material => "material",
@@ -73,7 +73,7 @@ impl Part {
         }
     }
 
-    /// Those of a scene.
+    /// Specs of these parts of a scene.
     pub fn all(self, scene: &SceneBuilder) -> Vec<&Spec> {
         match self {
             Part::Material => scene.materials.iter().collect(),
@@ -91,7 +91,8 @@ impl Part {
         }
     }
 
-    /// How a change names the one with this number: by its name, if no other has it and it is not a number itself.
+    /// Name or number by which a change refers to the one with this number: the name, if no other has it and it is not a
+    /// number itself.
     pub fn which(self, scene: &SceneBuilder, number: usize) -> Which {
         let all = self.all(scene);
         let name = all.get(number).map_or("", |spec| &spec.name);

@@ -16,7 +16,7 @@ pub struct ClassicMaterial {
     pub kt: Rgb,
     /// Exponent of the highlight.
     pub exponent: f32,
-    /// How much of S is light from the reflected direction, 0..=1; 1 in the paper.
+    /// Share of S that is light from the reflected direction, 0..=1; 1 in the paper.
     pub reflectivity: f32,
     /// Refractive index of the inside over that of the outside.
     pub eta: f32,
@@ -56,7 +56,7 @@ impl Default for ClassicMaterial {
 pub struct ClassicLight {
     /// Unit direction towards it.
     pub wi: Vec3,
-    /// Its position; `None` when infinitely far.
+    /// Position of the light; `None` when infinitely far.
     pub position: Option<Vec3>,
     /// Factor on the light's colour, 0..=1: a spot's cone.
     pub strength: f32,

@@ -8,7 +8,7 @@ use std::cmp::Ordering;
 
 /// The width of a crack, over the longest side of the mesh.
 const CRACK: f32 = 1.0 / 2048.0;
-/// How lattices are shifted, in cells: not so that round numbers are between two.
+/// Shifts of lattices, in cells: they keep round numbers off the borders between two.
 const LATTICES: [f32; 4] = [0.37, 0.83, 0.11, 0.61];
 
 /// Vertices or triangles that one thread takes at a time.
@@ -26,8 +26,8 @@ impl Mesh {
             && LATTICES.iter().any(|shift| self.is_closed_by(bounds.min, cell, *shift))
     }
 
-    /// The same for vertices that are in the same cell of a lattice. Edges are told from each other by hashes alone: the sum over all is 0
-    /// where each is cancelled by one that runs the other way. Merging vertices never opens what is closed.
+    /// [`Mesh::is_closed`] where vertices in the same cell of a lattice count as one. Edges are told from each other by hashes alone: the
+    /// sum over all is 0 where each is cancelled by one that runs the other way. Merging vertices never opens what is closed.
     fn is_closed_by(&self, min: Vec3, cell: f32, shift: f32) -> bool {
         let place = |p: Vec3| {
             let at = if cell > 0.0 { ((p - min) / cell + shift).to_array() } else { [0.0; 3] };

@@ -17,7 +17,7 @@ pub enum SceneError {
         nearest: Option<String>,
         /// All known names.
         known: Vec<String>,
-        /// Where it was written.
+        /// Place where it was written.
         at: Span,
     },
     /// A value of the wrong kind or out of range.
@@ -29,23 +29,23 @@ pub enum SceneError {
         wanted: String,
         /// The value found.
         found: String,
-        /// Where it was written.
+        /// Place where it was written.
         at: Span,
     },
     /// A required value is missing.
     #[error("{}{what} is missing: add it", place(.at))]
     Missing {
-        /// What is missing.
+        /// Name of the missing value.
         what: String,
-        /// Where it belongs.
+        /// Place where it belongs.
         at: Span,
     },
     /// Any other error, described in full.
     #[error("{}{message}", place(.at))]
     Invalid {
-        /// What is wrong, and what to do.
+        /// Problem, and what to do.
         message: String,
-        /// Where it was written.
+        /// Place where the cause was written.
         at: Span,
     },
 }
@@ -73,7 +73,7 @@ impl SceneError {
         }
     }
 
-    /// Where the error was written.
+    /// Place where the error was written.
     pub fn at(&self) -> &Span {
         match self {
             SceneError::Unknown { at, .. }
@@ -187,9 +187,9 @@ fn suggestion(nearest: &Option<String>, known: &[String]) -> String {
 /// A problem worth reporting that does not stop the work.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Warning {
-    /// What is wrong, and what was done about it.
+    /// Problem, and what was done about it.
     pub message: String,
-    /// Where it was found.
+    /// Place where the problem was found.
     pub at: Span,
 }
 

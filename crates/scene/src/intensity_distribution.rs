@@ -2,7 +2,7 @@
 
 use bilux_math::transcendental::{cos_f64, sin_f64};
 
-/// How a goniometer's planes lie about the luminaire. [CIE 121; IES LM-75]
+/// Orientation of a goniometer's planes about the luminaire. [CIE 121; IES LM-75]
 ///
 /// The luminaire has three perpendicular directions: its axis, which a lamp that hangs points downwards; C0, from which the planes of
 /// type C are counted; and C90, which is C0 × axis.
@@ -81,7 +81,7 @@ impl IntensityDistribution {
         Ok(IntensityDistribution { name: name.to_owned(), goniometer, azimuths, polar, candela })
     }
 
-    /// The same in all directions, in candela.
+    /// Distribution of equal intensity in all directions, in candela.
     pub fn isotropic(candela: f32) -> IntensityDistribution {
         IntensityDistribution {
             name: "isotropic".to_owned(),
@@ -92,12 +92,12 @@ impl IntensityDistribution {
         }
     }
 
-    /// Its name for people.
+    /// Name for people.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// How its planes lie.
+    /// Orientation of the planes.
     pub fn goniometer(&self) -> Goniometer {
         self.goniometer
     }

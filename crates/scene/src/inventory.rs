@@ -14,7 +14,7 @@ pub struct Inventory {
 /// An animation in a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Animation {
-    /// Its name; may be empty.
+    /// Name of the animation; may be empty.
     pub name: String,
     /// When it ends, in seconds.
     pub seconds: f32,

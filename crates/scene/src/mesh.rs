@@ -11,7 +11,7 @@ const MAX_RINGS: u32 = 4096;
 /// positions; [`crate::SceneBuilder::build`] checks that.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
-    /// Its name in the file; may be empty.
+    /// Name in the file; may be empty.
     pub name: String,
     /// Vertices.
     pub positions: Vec<Vec3>,

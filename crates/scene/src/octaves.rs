@@ -3,7 +3,7 @@
 use crate::parameters::Reader;
 use bilux_math::registry::{Parameter, ParameterKind};
 
-/// How quickly octaves fade.
+/// Rate at which octaves fade.
 pub(crate) const ROUGHNESS: Parameter = Parameter {
     name: "roughness",
     summary: "amplitude of each octave relative to the one before",

@@ -46,9 +46,9 @@ pub struct Spec {
     pub name: String,
     /// The row's name, such as `dielectric`.
     pub kind: String,
-    /// Its parameters.
+    /// Parameters of the entry.
     pub parameters: Parameters,
-    /// Where it was written.
+    /// Place where the spec was written.
     pub span: Span,
 }
 
@@ -87,7 +87,7 @@ impl Spec {
         self.parameters.find(key).map_or_else(|| default.into(), |(value, _)| value.clone())
     }
 
-    /// The same spec with one more parameter.
+    /// Sets a parameter.
     pub fn with(mut self, key: &str, value: impl Into<Value>) -> Spec {
         self.parameters.set(key, value);
         self
@@ -144,7 +144,7 @@ impl<'a> Reader<'a> {
         self.spec.parameters.find(key).is_some()
     }
 
-    /// Where a key was written, or otherwise the whole spec.
+    /// Place where a key was written, or otherwise the whole spec.
     pub fn span(&self, key: &str) -> &Span {
         self.spec.parameters.find(key).map_or(&self.spec.span, |(_, span)| span)
     }

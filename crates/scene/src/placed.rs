@@ -20,7 +20,7 @@ impl Visibility {
     /// All of them.
     pub const ALL: [Visibility; 3] = [Visibility::Full, Visibility::NoCamera, Visibility::Hidden];
 
-    /// Its name in files.
+    /// Name in files.
     pub fn name(self) -> &'static str {
         match self {
             Visibility::Full => "full",
@@ -37,11 +37,11 @@ impl Visibility {
 
 /// An object placed in the scene, the input of [`crate::geometry::Geometry::build`].
 pub struct Placed {
-    /// Its triangles, in object space.
+    /// Triangles, in object space.
     pub mesh: Arc<Mesh>,
     /// Index of its material.
     pub material: u32,
-    /// Its position and motion.
+    /// Position and motion.
     pub motion: Motion,
     /// Whether it keeps a tree of its own.
     pub instanced: bool,

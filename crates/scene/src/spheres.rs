@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// A sphere in world space; it does not move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlacedSphere {
-    /// Its centre.
+    /// Centre of the sphere.
     pub centre: Vec3,
     /// Positive.
     pub radius: f32,
@@ -28,7 +28,7 @@ impl PlacedSphere {
         Sphere { centre: self.centre.to_array(), radius: self.radius }
     }
 
-    /// Where the infinite line of a ray enters and leaves, in lengths of the ray's direction; `None` where it misses.
+    /// Distances at which the infinite line of a ray enters and leaves, in lengths of the ray's direction; `None` where it misses.
     pub(crate) fn chord(&self, ray: &Ray) -> Option<[f64; 2]> {
         self.shape().chord(ray)
     }

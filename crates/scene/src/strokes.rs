@@ -20,7 +20,7 @@ pub struct StrokeWidths {
 }
 
 impl StrokeWidths {
-    /// The same widths, with fractions of the scene's size (the diagonal of its bounding box) in place of 0.
+    /// Replaces widths of 0 by fractions of the scene's size (the diagonal of its bounding box).
     pub fn for_size(self, size: f32) -> StrokeWidths {
         let size = if size > 0.0 && size.is_finite() { size } else { 1.0 };
         let or = |width: f32, part: f32| if width > 0.0 && width.is_finite() { width } else { size * part };

@@ -75,7 +75,7 @@ impl Surface {
         }
     }
 
-    /// The same for a classic light.
+    /// [`Surface::spawn_to_light`] for a classic light.
     pub fn spawn_to_classic_light(&self, light: &ClassicLight) -> Ray {
         match light.position {
             Some(position) => Ray { t_max: 1.0 - light.clearance, ..self.spawn_to(position) },

@@ -14,7 +14,7 @@ pub struct Wavelength {
     pub nm: f32,
     /// The sensitivity of the channels to it, over its sampling density: 1 each on average.
     pub weight: Rgb,
-    /// Its difference from the d line in Cauchy's formula: in 1/nm², over the difference between the F and C lines.
+    /// Difference from the d line in Cauchy's formula: in 1/nm², over the difference between the F and C lines.
     from_d: f32,
 }
 

@@ -33,7 +33,7 @@ impl Cell {
         cell
     }
 
-    /// Its surface area.
+    /// Surface area of the cell.
     pub(super) fn area(&self) -> f64 {
         self.area
     }
@@ -132,7 +132,7 @@ const BOX_FACES: [[usize; 4]; 6] =
 enum Corner {
     Left(DVec3),
     Right(DVec3),
-    /// Where an edge crosses the plane, and whether it leaves the left side there.
+    /// Point where an edge crosses the plane, and whether the edge leaves the left side there.
     Crossing(DVec3, bool),
 }
 

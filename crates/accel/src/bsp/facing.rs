@@ -86,7 +86,7 @@ const ROUND_UP: f32 = 1.000_001;
 /// Compensates for the rounding of a three-term dot product and of the normal.
 const EVALUATION: f32 = 16.0 / 16_777_216.0;
 
-/// What is needed of a ray to decide whether it sees only back faces.
+/// Values of a ray that decide whether it sees only back faces.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RayView {
     direction: Vec3,

@@ -9,7 +9,7 @@ use bilux_math::DVec3;
 /// Maximum number of polygons in a leaf that could still be split.
 pub(super) const LEAF: usize = 4;
 
-/// What the rules inspect in a polygon or an object.
+/// Position and orientation of a polygon or an object, which the rules inspect.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Item {
     pub(super) position: DVec3,
@@ -19,15 +19,15 @@ pub(super) struct Item {
 
 /// A set of polygons or objects inside one cell.
 pub(super) trait Partition: Sized + Send {
-    /// How many items there are.
+    /// Number of items.
     fn len(&self) -> usize;
-    /// How many triangles they hold.
+    /// Number of triangles that the items hold.
     fn references(&self) -> usize;
     /// True when it is not worth splitting.
     fn is_small(&self) -> bool;
     /// Each item, as the rules see it.
     fn items(&self) -> Vec<Item>;
-    /// How many items reach to the left of a plane, to the right, and to both.
+    /// Numbers of items that reach to the left of a plane, to the right, and to both.
     fn sides(&self, plane: &Plane) -> [usize; 3];
     /// Distributes the items over the sides of a plane.
     fn split(&self, plane: &Plane) -> Parts<Self>;

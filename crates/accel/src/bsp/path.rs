@@ -37,7 +37,7 @@ pub(super) struct Path {
     slack: f32,
 }
 
-/// How a ray crosses a plane.
+/// Crossing of a ray and a plane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PlaneCrossing {
     /// 1 when the right side is the near one.

@@ -1,4 +1,4 @@
-//! What remains of each triangle inside a cell, while a tree is built.
+//! Pieces of triangles inside a cell, while a tree is built.
 
 use super::plane::{Plane, Side, Space};
 use crate::mesh::TriangleMesh;
@@ -12,7 +12,7 @@ use bilux_math::DVec3;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pieces {
     triangles: Vec<u32>,
-    /// Where the points of each piece end.
+    /// End of each piece in `points`, exclusive.
     ends: Vec<usize>,
     points: Vec<DVec3>,
 }

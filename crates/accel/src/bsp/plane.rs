@@ -10,7 +10,7 @@ use bilux_math::{Aabb, DVec3, Vec3};
 pub(super) struct Space {
     /// Centre of the mesh.
     pub(super) centre: Vec3,
-    /// What counts as touching a plane: 8 units of f32 rounding of the largest half-extent. A plane through points of
+    /// Largest distance that counts as touching a plane: 8 · 2⁻²⁴ of the largest extent of the mesh. A plane through points of
     /// the mesh, once its coefficients are rounded to f32, is never further from them.
     pub(super) tolerance: f64,
 }
@@ -43,9 +43,9 @@ pub(super) struct Plane {
 /// The side of a plane on which something lies, within the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
-    /// Where `normal · x` is less.
+    /// Points where `normal · x` is less.
     Left,
-    /// Where it is greater.
+    /// Points where `normal · x` is greater.
     Right,
     /// In the plane.
     On,

@@ -32,7 +32,7 @@ struct Sweep {
     low: DVec3,
     high: DVec3,
     tolerance: f64,
-    /// Where pieces begin and end, and where pieces lie that fit within a plane; each in ascending order.
+    /// Positions where pieces begin and end, and of pieces that fit within a plane; each in ascending order.
     begins: Vec<f64>,
     ends: Vec<f64>,
     flats: Vec<f64>,

@@ -112,7 +112,7 @@ fn depth_allows(depth: usize, counts: [usize; 2]) -> bool {
     counts.iter().all(|&count| depth + 1 + levels(count) <= MAX_DEPTH)
 }
 
-/// Where to split, and what lies on both sides.
+/// Position and cost of a split, and the items on both sides.
 struct Split {
     axis: usize,
     grid: Grid,

@@ -9,9 +9,9 @@ use std::collections::BinaryHeap;
 /// A point of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestPoint {
-    /// Its distance from the given point.
+    /// Distance from the given point.
     pub distance: f32,
-    /// Its position.
+    /// Position of the nearest point.
     pub point: [f32; 3],
     /// Barycentric weight of the triangle's second vertex, 0..=1.
     pub u: f32,

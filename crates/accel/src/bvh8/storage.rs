@@ -24,16 +24,16 @@ const UNIT: usize = size_of::<Unit>();
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StorageError {
-    /// It cannot be read.
+    /// Failure to read the file.
     #[error("cannot read the tree: {0}")]
     Io(#[from] io::Error),
-    /// It does not begin with the magic bytes.
+    /// File that does not begin with the magic bytes.
     #[error("this is not a bvh8 tree: it does not begin with BILUXBV8")]
     NotATree,
-    /// It was written by another version.
+    /// File of another version.
     #[error("the tree has version {0}, but this library reads version {VERSION}: rebuild it")]
     Version(u32),
-    /// It is too short or too long.
+    /// File that is too short or too long.
     #[error("the tree has {found} bytes, but its header says {expected}")]
     Length {
         /// The length that the header states.
@@ -41,7 +41,7 @@ pub enum StorageError {
         /// The actual length.
         found: u64,
     },
-    /// Its bytes are not those that were written.
+    /// File whose bytes are not those that were written.
     #[error("the tree is damaged: {0}")]
     Damaged(&'static str),
 }

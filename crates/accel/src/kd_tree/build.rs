@@ -58,7 +58,7 @@ struct Task {
     references: Vec<Reference>,
     cell: Planes,
     depth: usize,
-    /// How many more references may be created below.
+    /// Maximum number of additional references that may be created below.
     spare: usize,
 }
 

@@ -41,7 +41,7 @@ impl KdNode {
         KdNode { payload: plane.to_bits(), link: (above as u32) << 2 | axis as u32 }
     }
 
-    /// The same node in a tree where other nodes and references come first.
+    /// This node in a tree where other nodes and references come first.
     pub(super) fn behind(self, nodes: usize, references: usize) -> KdNode {
         match self.is_leaf() {
             true => KdNode { payload: self.payload + references as u32, ..self },

@@ -32,7 +32,7 @@ impl Curve {
         Curve { points, widths, span: [0.0, 1.0] }
     }
 
-    /// The same curve as `count` pieces of equal spans: they take more memory, but have tighter boxes and are faster
+    /// Cuts the curve into `count` pieces of equal spans: they take more memory, but have tighter boxes and are faster
     /// to query.
     pub fn pieces(self, count: u32) -> impl Iterator<Item = Curve> {
         let [from, to] = self.span;

@@ -21,7 +21,7 @@ pub struct Quadric {
 }
 
 impl Quadric {
-    /// Its own box.
+    /// Box that clips the surface, rounded outwards.
     pub fn bounds(&self) -> [[f32; 3]; 2] {
         let [low, high] = self.within.map(wide);
         outwards(low, high)

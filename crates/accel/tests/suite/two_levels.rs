@@ -120,7 +120,7 @@ fn an_identity_transform_changes_no_bit() {
     }
 }
 
-/// What a filter is asked about is a hit of the instance that the ray meets, for every kind of query.
+/// Filters are asked about hits of the instance that the ray meets, for every kind of query.
 #[test]
 fn filters_know_which_instance_is_hit() {
     let mesh = Arc::new(closed::all().iter().find(|c| c.name == "sphere").expect("it is there").mesh());

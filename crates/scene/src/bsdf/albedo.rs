@@ -60,7 +60,7 @@ impl Albedo {
         Albedo::of_alpha(ggx.least(), eta)
     }
 
-    /// The same for isotropic microfacets.
+    /// [`Albedo::new`] for isotropic microfacets of this alpha.
     #[inline(always)]
     pub(super) fn of_alpha(alpha: f32, eta: f32) -> Albedo {
         let amplitude = ((eta - 1.0) / (eta + 1.0)).clamp(0.0, 1.0);
@@ -77,13 +77,13 @@ impl Albedo {
         self.at_root(cos.clamp(0.0, 1.0).sqrt())
     }
 
-    /// The same by the square root of the cosine, 0..=1.
+    /// [`Albedo::at`] by the square root of the cosine, 0..=1.
     #[inline(always)]
     pub(super) fn at_root(&self, root: f32) -> f32 {
         self.entry(root, self.shared())
     }
 
-    /// The same along several directions.
+    /// [`Albedo::at_root`] along several directions.
     #[inline(always)]
     pub(super) fn at_roots<const N: usize>(&self, roots: [f32; N]) -> [f32; N] {
         self.entries(roots, self.shared())
@@ -95,7 +95,7 @@ impl Albedo {
         self.entry(cos.clamp(0.0, 1.0).sqrt(), |entry| entry[INDICES])
     }
 
-    /// The same along several directions, by the square roots of their cosines.
+    /// [`Albedo::opaque_at`] along several directions, by the square roots of their cosines.
     #[inline(always)]
     pub(super) fn opaque_at_roots<const N: usize>(&self, roots: [f32; N]) -> [f32; N] {
         self.entries(roots, |entry| entry[INDICES])
@@ -189,7 +189,7 @@ impl Albedo {
         found
     }
 
-    /// The same for several cosines.
+    /// [`Albedo::entry`] for several cosines.
     #[inline(always)]
     fn entries<const N: usize>(&self, roots: [f32; N], of: impl Fn(&Entry) -> f32) -> [f32; N] {
         let (row, between) = place(self.roughness, ROUGHNESSES);

@@ -25,8 +25,7 @@ pub fn faces_away(n_shade: Vec3, n_geom: Vec3, view: Vec3) -> bool {
 }
 
 impl Bsdf {
-    /// The same BSDF, with the shading normal, and that of a lobe with its own, bent back for a viewer behind it
-    /// instead of scattering black.
+    /// Bends the shading normal, and that of a lobe with its own, back for a viewer behind it, instead of scattering black.
     #[inline]
     pub fn bending(mut self) -> Bsdf {
         self.bend();

@@ -72,7 +72,7 @@ impl CoatedDielectric {
         CoatedDielectric { glass, reflected, passed, cover }
     }
 
-    /// The same glass below a thin film.
+    /// Puts a thin film on the glass.
     pub fn below(self, film: ThinFilm) -> CoatedDielectric {
         CoatedDielectric { glass: RoughDielectric { film: Some(film), ..self.glass }, ..self }
     }
@@ -83,7 +83,7 @@ impl CoatedDielectric {
         &self.glass
     }
 
-    /// The same glass with another index.
+    /// Replaces the index.
     pub(super) fn of_index(self, eta: f32) -> CoatedDielectric {
         CoatedDielectric { glass: RoughDielectric { eta, ..self.glass }, ..self }
     }
@@ -140,7 +140,7 @@ impl CoatedDielectric {
         self.eval_and_pdf_below(self.cover.passed_along_both(wo, wi), wo, wi, mode)
     }
 
-    /// The same by what the coating lets pass along both directions.
+    /// [`CoatedDielectric::eval_and_pdf`] by what the coating lets pass along both directions.
     pub(super) fn eval_and_pdf_below(
         &self,
         passed: [f32; 2],

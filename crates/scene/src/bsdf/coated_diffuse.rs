@@ -52,7 +52,7 @@ const CLAY: Rgb = Rgb { r: 0.9, g: 0.6, b: 0.4 };
 pub struct CoatedDiffuse {
     /// The reflected fraction of the light that reaches the base, divided by the mean transmittance.
     scale: Rgb,
-    /// The same for light that leaves on the other side.
+    /// `scale` for light that leaves on the other side.
     through: Rgb,
     /// The reflectance of the boundary.
     boundary: Albedo,
@@ -98,7 +98,7 @@ impl CoatedDiffuse {
         light_at_nodes(&std::array::from_fn(|i| (1.0 - boundary[i]) * passed[i]))
     }
 
-    /// The same lobe with a rough base, roughness 0..=1; `colour` is the reflectance of the base without any weights.
+    /// Gives the lobe a rough base, roughness 0..=1; `colour` is the reflectance of the base without any weights.
     pub fn rough(self, roughness: f32, colour: Rgb) -> CoatedDiffuse {
         let rough_diffuse = RoughDiffuse::new(roughness, colour, &self.light_at_nodes());
         CoatedDiffuse { rough_diffuse: (roughness > 0.0).then_some(rough_diffuse), ..self }
@@ -163,7 +163,7 @@ impl CoatedDiffuse {
         (self.eval(wo, wi, mode), self.pdf_solid_angle(wo, wi))
     }
 
-    /// The same by what the cover lets pass along both directions.
+    /// [`CoatedDiffuse::eval_and_pdf`] by what the cover lets pass along both directions.
     #[inline]
     pub(super) fn eval_and_pdf_below(&self, passed: [f32; 2], wo: Vec3, wi: Vec3) -> (Rgb, f32) {
         (self.eval_below(passed, wo, wi), self.pdf_solid_angle(wo, wi))

@@ -30,17 +30,17 @@ impl Coating {
         Coating { coat_weight: weight, coat, ..Coating::NONE }
     }
 
-    /// The same layers, with a coat below them.
+    /// Adds a coat below the layers.
     pub fn coated(self, weight: f32, coat: Albedo) -> Coating {
         Coating { coat_weight: weight, coat, ..self }
     }
 
-    /// The same layers below fuzz on this fraction of the surface, 0..=1.
+    /// Adds fuzz above the layers, on this fraction of the surface, 0..=1.
     pub fn below(self, weight: f32, fuzz: FuzzAlbedo) -> Coating {
         Coating { fuzz: (weight > 0.0).then_some((weight, fuzz)), ..self }
     }
 
-    /// The same layers about another normal than the lobe's.
+    /// Turns the layers to another normal than the lobe's.
     pub fn about(self, up: Vec3) -> Coating {
         Coating { up, ..self }
     }
@@ -58,7 +58,7 @@ impl Coating {
         passed
     }
 
-    /// The same along several directions.
+    /// [`Coating::passed`] along several directions.
     #[inline(always)]
     fn passed_at<const N: usize>(&self, cosines: [f32; N]) -> [f32; N] {
         let mut passed = [1.0; N];

@@ -42,7 +42,7 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
 pub struct Conductor {
     /// The reflectance of a microfacet.
     pub fresnel: Fresnel,
-    /// Its microfacets.
+    /// Microfacets of the surface.
     pub facets: Facets,
 }
 

@@ -42,7 +42,7 @@ pub struct Dielectric {
 }
 
 impl Dielectric {
-    /// The same with another index.
+    /// Replaces the index.
     #[inline]
     pub(super) fn of_index(self, eta: f32) -> Dielectric {
         Dielectric { eta, ..self }

@@ -7,9 +7,9 @@ use bilux_math::{Rgb, Vec3};
 pub enum Fresnel {
     /// From the complex refractive index eta + i·k, relative to the outside.
     Complex {
-        /// Its real part, above 0.
+        /// Real part of the index, above 0.
         eta: Rgb,
-        /// Its imaginary part, the extinction, 0 or more.
+        /// Imaginary part of the index, the extinction coefficient, 0 or more.
         k: Rgb,
     },
     /// From the reflectance at normal incidence; see [`Fresnel::tinted`].
@@ -69,7 +69,7 @@ pub(super) fn schlick_from(straight: Rgb, cos: f32) -> Rgb {
     straight.lerp(Rgb::WHITE, (m * m) * (m * m) * m)
 }
 
-/// What [`Fresnel::tinted`] subtracts, but for a factor.
+/// Curve that [`Fresnel::tinted`] subtracts, but for a factor.
 #[inline(always)]
 pub(super) fn dent(cos: f32) -> f32 {
     let m = 1.0 - cos;
@@ -105,7 +105,7 @@ pub fn fresnel_dielectric(cos_theta: f32, eta: f32) -> f32 {
     if sin2_t >= 1.0 { 1.0 } else { reflected }
 }
 
-/// The same for an index of at least 1; 0 for an index of 1, where there is no boundary.
+/// [`fresnel_dielectric`] for an index of at least 1; 0 for an index of 1, where there is no boundary.
 #[inline(always)]
 pub(super) fn fresnel_on_denser(cos_theta: f32, eta: f32) -> f32 {
     let reflected = fresnel_dielectric(cos_theta, eta);

@@ -42,7 +42,7 @@ impl Fuzz {
         Fuzz { colour, albedo, from_below: 1.0 }
     }
 
-    /// The same fuzz with a factor, 0..=1, on light from below the surface.
+    /// Sets the factor, 0..=1, on light from below the surface.
     pub fn from_below(self, factor: f32) -> Fuzz {
         Fuzz { from_below: factor, ..self }
     }
@@ -128,7 +128,7 @@ static TABLE: LazyLock<[[f32; COSINES]; ROUGHNESSES]> = LazyLock::new(|| {
     })
 });
 
-/// The same at the nodes of [quadratures](super::nodes).
+/// Albedo of the fibres at the nodes of [quadratures](super::nodes).
 static AT_NODES: LazyLock<[[f32; NODES]; ROUGHNESSES]> =
     LazyLock::new(|| TABLE.each_ref().map(|row| GAUSS.map(|(root, _)| between_cosines(row, root))));
 
@@ -183,14 +183,14 @@ impl FuzzAlbedo {
         self.at_root(cos.clamp(0.0, 1.0).sqrt())
     }
 
-    /// The same by the square root of the cosine, 0..=1.
+    /// [`FuzzAlbedo::at`] by the square root of the cosine, 0..=1.
     #[inline(always)]
     fn at_root(&self, root: f32) -> f32 {
         let [found] = self.at_roots([root]);
         found
     }
 
-    /// The same along several directions.
+    /// [`FuzzAlbedo::at_root`] along several directions.
     #[inline(always)]
     pub(super) fn at_roots<const N: usize>(&self, roots: [f32; N]) -> [f32; N] {
         let ((row, share), table) = (self.row(), &*TABLE);
@@ -202,7 +202,7 @@ impl FuzzAlbedo {
         found
     }
 
-    /// The same at all nodes of [quadratures](super::nodes).
+    /// [`FuzzAlbedo::at`] at all nodes of [quadratures](super::nodes).
     #[inline]
     pub(super) fn at_nodes(&self) -> [f32; NODES] {
         let ((row, share), table) = (self.row(), &*AT_NODES);

@@ -122,7 +122,7 @@ impl Lobe {
         (!thin).then_some((eta, dispersion))
     }
 
-    /// The same lobe with another index.
+    /// Replaces the index of a dielectric.
     pub(super) fn of_index(self, eta: f32) -> Lobe {
         match self {
             Lobe::Dielectric(glass) => Lobe::Dielectric(glass.of_index(eta)),
@@ -155,7 +155,7 @@ impl Lobe {
         each_lobe!(self, l => l.strength())
     }
 
-    /// How much more light than [`Lobe::strength`], which is given, it scatters at grazing angles; negative for less.
+    /// Increase of the scattered light at grazing angles over [`Lobe::strength`], which is given; negative for less light.
     #[inline]
     pub(super) fn rise(&self, strength: f32) -> f32 {
         match self {

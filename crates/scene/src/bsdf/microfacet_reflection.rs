@@ -130,12 +130,12 @@ impl MicrofacetReflection {
         gloss
     }
 
-    /// The same lobe with a factor, 0..=1, on light from below the surface.
+    /// Sets the factor, 0..=1, on light from below the surface.
     pub fn from_below(self, factor: f32) -> MicrofacetReflection {
         MicrofacetReflection { from_below: factor, ..self }
     }
 
-    /// The same lobe below a thin film.
+    /// Puts a thin film on the surface.
     pub fn below(self, film: ThinFilm) -> MicrofacetReflection {
         MicrofacetReflection { film: Some(film), ..self }
     }
@@ -212,7 +212,7 @@ impl MicrofacetReflection {
         self.eval_and_pdf_below(self.cover.passed_along_both(wo, wi), wo, wi)
     }
 
-    /// The same by what the cover lets pass along both directions.
+    /// [`MicrofacetReflection::eval_and_pdf`] by what the cover lets pass along both directions.
     pub(super) fn eval_and_pdf_below(&self, passed: [f32; 2], wo: Vec3, wi: Vec3) -> (Rgb, f32) {
         let covered = self.covered(passed, wo);
         let Some((wo, wi, m)) = facet_between(self.ggx.is_smooth(), wo, wi) else {

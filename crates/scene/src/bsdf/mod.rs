@@ -1,4 +1,4 @@
-//! How surfaces scatter light. Each lobe has its own file; a [`Bsdf`] is a sum of lobes on a frame.
+//! Scattering by surfaces. Each lobe has its own file; a [`Bsdf`] is a sum of lobes on a frame.
 //!
 //! Directions: `wo` is the known one, `wi` the sampled or evaluated one; both are unit and point away from the
 //! surface. `eval` gives f·|cosθi|. In the lobes' own files directions are local, with the normal as z.
@@ -118,7 +118,7 @@ impl Bsdf {
         Bsdf::of_lobes(n_shade, n_geom, &lobes)
     }
 
-    /// The same for lobes that are copied once: they are large.
+    /// [`Bsdf::new`] for lobes that are copied once: they are large.
     pub(crate) fn of_lobes(n_shade: Vec3, n_geom: Vec3, lobes: &[Option<Lobe>]) -> Bsdf {
         let mut sum = Bsdf::empty(Frame::from_normal(n_shade), n_geom);
         for (i, lobe) in lobes.iter().flatten().take(MAX_LOBES).enumerate() {
@@ -145,7 +145,7 @@ impl Bsdf {
         }
     }
 
-    /// The same lobes about another normal; settings that depend on the previous normal have to be applied again.
+    /// Copies the lobes to another normal; settings that depend on the previous normal have to be applied again.
     #[inline]
     pub fn moved_to(&self, n_shade: Vec3, n_geom: Vec3) -> Bsdf {
         Bsdf { frame: Frame::from_normal(n_shade), n_geom, bends: false, apart: None, ..*self }
@@ -190,7 +190,7 @@ impl Bsdf {
         self.weights.iter().zip(&self.lobes).map_while(|(w, lobe)| Some((*w, lobe.as_ref()?)))
     }
 
-    /// The same BSDF with the local x axis along a tangent, for anisotropic lobes; a zero vector leaves it unchanged.
+    /// Turns the local x axis along a tangent, for anisotropic lobes; a zero vector leaves it unchanged.
     #[inline]
     pub fn along(mut self, tangent: Vec3) -> Bsdf {
         self.turn_along(tangent);

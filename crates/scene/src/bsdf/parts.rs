@@ -9,7 +9,7 @@ use bilux_math::{Frame, Rgb, Vec2, Vec3};
 pub(super) struct Parts([Bsdf; 2]);
 
 impl Bsdf {
-    /// The same BSDF with one of its lobes, by index, about a normal of its own.
+    /// Gives one of the lobes, by index, a normal of its own.
     pub fn with_lobe_frame(mut self, index: usize, n: Vec3) -> Bsdf {
         self.set_lobe_frame(index, n);
         self

@@ -57,7 +57,7 @@ pub struct RoughDielectric {
     pub tint: Rgb,
     /// A thin pane: transmitted light continues as the mirror image of reflected light, on the other side.
     pub thin: bool,
-    /// Its microfacets; not smooth.
+    /// Microfacets of the surface; not smooth.
     pub facets: Facets,
     /// A thin film on the outside; a pane has it on both sides.
     pub film: Option<ThinFilm>,
@@ -72,7 +72,7 @@ impl RoughDielectric {
         !facets.is_smooth() && (thin || (eta - 1.0).abs() > 1e-2)
     }
 
-    /// The same glass with another index; smooth if the index is close to that of the outside.
+    /// Replaces the index; the lobe becomes smooth if that is close to the index of the outside.
     pub fn of_index(self, eta: f32) -> Lobe {
         let RoughDielectric { dispersion, tint, thin, facets, film, .. } = self;
         if RoughDielectric::is_rough(eta, thin, &facets) {

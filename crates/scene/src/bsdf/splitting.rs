@@ -4,7 +4,7 @@ use super::Bsdf;
 use crate::wavelength::Wavelength;
 
 impl Bsdf {
-    /// The same BSDF for light of one wavelength, where the outside has this refractive index rather than that of air.
+    /// Sets the indices for light of one wavelength, where the outside has this refractive index rather than that of air.
     /// If the wavelength matters, the BSDF [splits](Bsdf::splits) paths.
     pub fn refracting(mut self, wavelength: &Wavelength, eta_outside: f32) -> Bsdf {
         for lobe in self.lobes.iter_mut().flatten() {
@@ -16,7 +16,7 @@ impl Bsdf {
         self
     }
 
-    /// The same BSDF, marked when the outside medium depends on the wavelength.
+    /// Marks the BSDF when the outside medium depends on the wavelength.
     pub fn splitting(self, splits: bool) -> Bsdf {
         Bsdf { splits: self.splits || splits, ..self }
     }

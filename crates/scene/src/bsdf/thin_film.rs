@@ -95,7 +95,7 @@ impl Within {
         self.reflected([above, within], [Rgb::grey(across), Rgb::grey(along)])
     }
 
-    /// The same for metal, which shifts the phase of light by half a wavelength.
+    /// [`Within::over_glass`] for metal, which shifts the phase of light by half a wavelength.
     pub(super) fn over_metal(&self, metal: &Fresnel) -> Rgb {
         let Some([above, within]) = self.cosines else { return Rgb::WHITE };
         let b = metal.at(within).map(f32::sqrt);

@@ -1,4 +1,4 @@
-//! What a path carries.
+//! Quantities that a path carries.
 
 /// The quantity that a path carries: radiance from the lights, or importance from the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

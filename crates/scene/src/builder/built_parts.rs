@@ -1,4 +1,4 @@
-//! What earlier builds of a scene leave for the next one.
+//! Parts that earlier builds of a scene leave for the next one.
 
 use crate::error::SceneError;
 use crate::geometry::{TreeWork, Trees};

@@ -16,7 +16,7 @@ use std::sync::Arc;
 pub(super) trait Projection: Send + Sync + 'static {
     /// The unit direction that a point of the film's plane sees, if it sees any.
     fn direction(&self, film: DVec2) -> Option<DVec3>;
-    /// Where a direction of any length except zero is seen, and the film's area per solid angle there, in 1/sr.
+    /// Point of the film that sees a direction of any length except zero, and the film's area per solid angle there, in 1/sr.
     fn seen(&self, towards: DVec3) -> Option<(DVec2, f64)>;
     /// [`Camera::repeats`].
     fn repeats(&self, _film: DVec2) -> [Option<DVec2>; 3] {
@@ -45,7 +45,7 @@ pub(super) struct Central<P> {
     /// From the middle to the eye, in metres to the right of the direction in which it looks: it turns with the head
     /// [Ishiguro 1992].
     aside: f64,
-    /// The same camera as a pinhole, if it stands still and straight lines stay straight.
+    /// This camera as a pinhole, if it stands still and straight lines stay straight.
     pinhole: Option<Pinhole>,
 }
 
@@ -78,7 +78,7 @@ fn pinhole(pose: &Pose, matrix: DMat3) -> Pinhole {
 }
 
 impl<P: Projection> Central<P> {
-    /// Where a point is seen from a pose: on the film, the density there, and its distance and direction in the world.
+    /// Point of the film at which a point is seen from a pose, the density there, and its distance and direction in the world.
     fn seen(&self, pose: &Pose, p: DVec3) -> Option<(DVec2, f64, f64, DVec3)> {
         let away = p - pose.position;
         let towards = self.towards(pose.to_camera(away))?;
@@ -105,7 +105,7 @@ impl<P: Projection> Central<P> {
         (ahead > 0.0).then(|| DVec3::new(to.x * ahead, p.y, to.y * ahead))
     }
 
-    /// Where the eye is that looks in a direction of the camera's space.
+    /// Position of the eye that looks in a direction of the camera's space.
     fn eye(&self, pose: &Pose, towards: DVec3) -> DVec3 {
         let level = DVec2::new(towards.x, towards.z).try_normalize();
         let Some(level) = level.filter(|_| self.aside != 0.0) else { return pose.position };

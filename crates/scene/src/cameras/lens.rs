@@ -68,7 +68,7 @@ pub(super) struct ThinLens {
 }
 
 impl ThinLens {
-    /// That of a camera at this distance from what it looks at.
+    /// Reads the lens of a camera at this distance from what it looks at.
     pub(super) fn read(reader: &Reader, distance: f32) -> Result<ThinLens, SceneError> {
         let [x, y] = ["focus_tilt_x", "focus_tilt_y"].map(|key| -tan(reader.number(key).to_radians()));
         let lens = ThinLens {
@@ -121,8 +121,8 @@ impl ThinLens {
         edge * disc.length()
     }
 
-    /// Where on the plane at distance 1 the ray from the middle of the lens goes through, given where the one from this point of the
-    /// lens, in metres, would if it were moved there. Both go through the same point of the plane of focus.
+    /// Point at which the ray from the middle of the lens crosses the plane at distance 1. `at` is that point for the ray from this
+    /// point of the lens, in metres, moved to the middle. Unmoved, both rays go through the same point of the plane of focus.
     pub(super) fn seen(&self, lens: Vec2, at: Vec2) -> Vec2 {
         let aside = if lens == Vec2::ZERO { lens } else { lens / self.focus };
         at + aside * (self.depth(at) / self.stretch(lens))

@@ -54,7 +54,7 @@ pub struct CameraConnection {
     pub density: f32,
 }
 
-/// How compositors place points of the world in a picture.
+/// Matrices with which compositors place points of the world in a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraMatrices {
     /// To the space of the camera: x to the right, y upwards, z forwards, in metres.
@@ -65,7 +65,7 @@ pub struct CameraMatrices {
 }
 
 impl CameraMatrices {
-    /// Those of a camera at a position with these axes, whose film is given in the camera's own space.
+    /// Matrices of a camera at a position with these axes, whose film is given in the camera's own space.
     fn new(position: Vec3, [right, up, forward]: [Vec3; 3], film: Option<Mat4>) -> CameraMatrices {
         let rotation = Mat4::from_cols(right.extend(0.0), up.extend(0.0), forward.extend(0.0), Vec4::W);
         let to_camera = rotation.transpose() * Mat4::from_translation(-position);
@@ -95,8 +95,8 @@ pub trait Camera: Send + Sync {
     ///
     /// This is the inverse of [`Camera::ray`], off the film too. `None` when no ray sees the point, as behind the camera.
     fn connect(&self, from: Vec3, lens: Vec2, time: f32) -> Option<CameraConnection>;
-    /// Where beside the film the ray of a point on the film is too: a panorama begins again at its edges, and pixel filters reach
-    /// there.
+    /// Points beside the film whose ray is that of a point on the film: a panorama begins again at its edges, and pixel filters
+    /// reach there.
     fn repeats(&self, _film: Vec2) -> [Option<Vec2>; 3] {
         [None; 3]
     }
@@ -110,9 +110,9 @@ pub trait Camera: Send + Sync {
     /// The point of the film at which a point of the scene is seen through the middle of the lens, also where that is off
     /// the film. `None` where no ray sees it, as behind the camera. Of two eyes, it is the left one that sees it.
     fn project(&self, p: Vec3, time: f32) -> Option<Vec2>;
-    /// The same in double precision, for those who measure in pictures.
+    /// [`Camera::project`] in double precision, for those who measure in pictures.
     fn project_f64(&self, p: DVec3, time: f32) -> Option<DVec2>;
-    /// The same for the eye that sees another point of the film.
+    /// [`Camera::project_f64`] for the eye that sees another point of the film.
     fn project_beside(&self, p: DVec3, time: f32, _film: DVec2) -> Option<DVec2> {
         self.project_f64(p, time)
     }
@@ -138,7 +138,7 @@ pub trait Camera: Send + Sync {
     fn shape(&self) -> Option<f64> {
         None
     }
-    /// What users should know about its picture: each is a sentence.
+    /// Warnings for users about the picture: each is a sentence.
     fn warnings(&self) -> Vec<String> {
         Vec::new()
     }
@@ -252,7 +252,7 @@ fn check_changes(keys: CameraKeys, may_change: &str) -> Result<(), SceneError> {
     Err(SceneError::invalid(message, first.span(key)))
 }
 
-/// What is wrong with a camera that has no axes.
+/// Error of a camera that has no axes.
 fn without_axes(reader: &Reader) -> SceneError {
     let message = "a camera must not look along its own up direction, nor at its own position: one that looks straight down needs \
                    another up, such as [0, 0, -1]";

@@ -56,7 +56,7 @@ struct OpenCv {
     warnings: Vec<String>,
 }
 
-/// What distortion does to points of the plane at distance 1. [OpenCV]
+/// Distortion of points of the plane at distance 1. [OpenCV]
 struct Distortion {
     /// k1, k2, k3, and what they are divided by.
     radial: [[f64; 3]; 2],
@@ -70,7 +70,7 @@ struct Lens {
     distortion: Distortion,
     /// The square of the distance from the axis below which it is.
     limit: f64,
-    /// Where to look for the points that radial distortion alone would bring somewhere.
+    /// Starts of the search for the points that radial distortion alone would bring somewhere.
     starts: Starts,
 }
 
@@ -96,7 +96,7 @@ impl Distortion {
         self.radial == [[0.0; 3]; 2] && self.tangential == DVec2::ZERO && self.prism == [DVec2::ZERO; 2]
     }
 
-    /// Where a point goes, and the derivatives of that.
+    /// Distorted point, and the derivatives of the distortion.
     #[inline]
     fn at(&self, p: DVec2) -> (DVec2, DMat2) {
         let (x, y, r2) = (p.x, p.y, p.length_squared());

@@ -91,7 +91,7 @@ impl Orthographic {
         Ok(camera)
     }
 
-    /// The same film as a meter of the light that arrives.
+    /// Turns the film into a meter of the light that arrives.
     pub(super) fn receiving(self) -> Orthographic {
         Orthographic { receives: true, ..self }
     }

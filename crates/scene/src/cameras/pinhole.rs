@@ -5,7 +5,7 @@ use bilux_math::{Vec2, Vec3};
 /// All of its rays start at one point.
 #[derive(Clone, Copy, Debug)]
 pub struct Pinhole {
-    /// Where the rays start.
+    /// Point at which the rays start.
     pub position: Vec3,
     /// To the right and upwards along the film, and to its middle at distance 1. They are unit vectors and perpendicular unless
     /// the film is shifted or skewed: each such film is what an oblique frame makes of a plain one, at no cost for the plain one.

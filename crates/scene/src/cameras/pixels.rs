@@ -47,7 +47,7 @@ pub(super) struct Pixels {
 }
 
 impl Pixels {
-    /// That of a table's parameters in a picture of this width over height. A picture of the shape that was calibrated is all
+    /// Film of a table's parameters in a picture of this width over height. A picture of the shape that was calibrated is all
     /// of that, at any size; others have its height, and less or more at the sides.
     pub(super) fn read(reader: &Reader, aspect: f64) -> Pixels {
         let of = |x: &str, y: &str| DVec2::new(reader.number_f64(x), reader.number_f64(y));
@@ -93,7 +93,7 @@ impl Pixels {
         self.size.y / self.focal.y
     }
 
-    /// How far the corners of the picture are from its axis, on the plane at distance 1.
+    /// Distance of the farthest corner of the picture from the axis, on the plane at distance 1.
     pub(super) fn reach(&self) -> f64 {
         let corners = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
         corners.map(|corner| self.to_plane(corner).length()).into_iter().fold(0.0, f64::max)
@@ -116,7 +116,7 @@ impl Pixels {
         ])
     }
 
-    /// What users should know: that the picture has another shape than those that were calibrated, and which part of it is
+    /// Warnings for users: that the picture has another shape than those that were calibrated, and which part of it is
     /// black since it `is_blind` there.
     pub(super) fn warnings(&self, angle: f64, is_blind: impl Fn(DVec2) -> bool) -> Vec<String> {
         const GRID: usize = 100;

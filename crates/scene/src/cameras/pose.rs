@@ -1,4 +1,4 @@
-//! Where a camera is and where it looks, in double precision.
+//! Position and orientation of a camera, in double precision.
 
 use super::{CameraKeys, around, without_axes};
 use crate::error::SceneError;
@@ -47,7 +47,7 @@ impl Placing {
 }
 
 impl Poses {
-    /// Those of the parameters `position`, `look_at`, `up` and `mirrored`; whether it is mirrored, the first key says.
+    /// Poses of the parameters `position`, `look_at`, `up` and `mirrored`; the first key says whether the camera is mirrored.
     pub(super) fn read(keys: CameraKeys) -> Result<Poses, SceneError> {
         let place = |(time, reader): &(f32, Reader)| {
             let [position, look_at, up] = ["position", "look_at", "up"].map(|key| reader.vector_f64(key));

@@ -57,7 +57,7 @@ impl<L: Lens> Projection for Radial<L> {
     }
 }
 
-/// Where to begin to look for the inverse of a function that grows, by a table.
+/// Starts of a search for the inverse of a function that grows, in a table.
 pub(super) struct Starts {
     /// The factors from values to arguments, at squares of values with this distance.
     factors: Vec<f64>,
@@ -65,7 +65,7 @@ pub(super) struct Starts {
 }
 
 impl Starts {
-    /// That of a function that is 0 at 0 and grows up to `limit`, for values up to a bit more than `reach`.
+    /// Starts for a function that is 0 at 0 and grows up to `limit`, for values up to a bit more than `reach`.
     pub(super) fn new(limit: f64, reach: f64, function: impl Fn(f64) -> f64) -> Starts {
         const COUNT: usize = 512;
         let solve = |value: f64| {
@@ -86,7 +86,7 @@ impl Starts {
         Starts { factors: (0..COUNT).map(factor).collect(), per_square: 1.0 / step }
     }
 
-    /// What a value is to be multiplied by, by its square.
+    /// Factor from a value to its argument, by the square of the value.
     #[inline]
     pub(super) fn factor(&self, square: f64) -> f64 {
         let at = (square * self.per_square).min((self.factors.len() - 2) as f64);

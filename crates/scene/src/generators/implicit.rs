@@ -43,12 +43,12 @@ pub(super) fn soft_max(a: f32, b: f32, width: f32) -> f32 {
     -soft_min(-a, -b, width)
 }
 
-/// How a mesh is cut from a field.
+/// Box and samples by which a mesh is cut from a field.
 pub(super) struct Cut {
     pub(super) bounds: Aabb,
     /// The number of boxes along each axis.
     pub(super) cells: UVec3,
-    /// How much closer the samples are at the upper end of each axis than on average, from 0 to below 1; negative at the lower one.
+    /// Fraction by which samples at the upper end of each axis are closer than the mean, 0 to below 1; negative for the lower end.
     pub(super) finer: Vec3,
 }
 

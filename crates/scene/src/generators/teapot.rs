@@ -48,7 +48,7 @@ pub(super) const TESSELLATION: Parameter =
 /// The height of the original control points.
 pub const NEWELL_HEIGHT: f64 = 3.15;
 
-/// How the teapot is tessellated and scaled.
+/// Tessellation and scale of the teapot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Teapot {
     /// Segments along each patch edge, at least 1; the teapot has about 64 times the square of this many triangles.

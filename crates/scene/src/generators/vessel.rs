@@ -12,7 +12,7 @@ use crate::mesh::Mesh;
 use bilux_math::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
-/// How the vessel is tessellated and scaled.
+/// Tessellation and scale of the vessel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vessel {
     /// Segments along each patch edge, at least 4.

@@ -11,7 +11,7 @@ impl Geometry {
         is_triangle.then(|| self.front_of(self.object_of_primitive(primitive), primitive, time))?
     }
 
-    /// The same for a primitive of an object.
+    /// [`Geometry::front`] for a primitive of an object.
     #[inline]
     pub(crate) fn front_of(&self, object: u32, primitive: Primitive, time: f32) -> Option<Vec3> {
         let normal = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a);

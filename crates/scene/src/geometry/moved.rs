@@ -1,4 +1,4 @@
-//! Where a point of a surface is at another time.
+//! Positions of points of surfaces at another time.
 
 use super::Geometry;
 use bilux_accel::Hit;
@@ -11,7 +11,7 @@ impl Geometry {
         self.is_triangle(hit.primitive()).then_some([object, triangle])
     }
 
-    /// Where the point `p` of a surface that was hit is at a time in seconds, and where it is at another one, among the same
+    /// Positions of the point `p` of a surface that was hit, at two times in seconds: here, and in `next`, which has the same
     /// objects with meshes that may be in another pose. In double precision, for those who measure how far it moves.
     pub fn moved(&self, hit: &Hit, p: Vec3, next: &Geometry, [from, to]: [f32; 2]) -> [DVec3; 2] {
         let still = [p.as_dvec3(); 2];

@@ -18,7 +18,7 @@ pub(super) struct ObjectTrees {
     pub(super) work: TreeWork,
 }
 
-/// How many trees were built, and over how much.
+/// Numbers of trees that were built, and of triangles in them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TreeWork {
     /// Trees, whatever they hold.

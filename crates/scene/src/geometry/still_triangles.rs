@@ -19,7 +19,7 @@ impl Geometry {
         triangle.unwrap_or_default().map(Vec3::from)
     }
 
-    /// Its vertices in the mesh of its object.
+    /// Vertices of a triangle in the mesh of its object.
     #[inline(always)]
     pub fn still_vertices(&self, object: u32, primitive: u32) -> [u32; 3] {
         let (first, _) = self.still_objects[self.still_owners[primitive as usize] as usize];

@@ -16,7 +16,7 @@ pub(super) fn normals_of([a, b, c]: [Vec3; 3], mirrors: bool, normal: Option<Vec
 /// A triangle that does not move, with all that a point on it needs.
 #[derive(Clone, Copy, Debug)]
 pub struct StillTriangle {
-    /// Its corners in world space.
+    /// Corners in world space.
     pub corners: [Vec3; 3],
     /// The normals of its corners in object space; zero where the mesh has none, so that the triangle's own counts.
     pub normals: [Vec3; 3],

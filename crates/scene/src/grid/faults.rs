@@ -3,7 +3,7 @@
 /// The bits of infinity: those of smaller numbers without a sign are below.
 const INFINITY: u32 = f32::INFINITY.to_bits();
 
-/// How many numbers could not be densities.
+/// Counts of numbers that could not be densities.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Faults {
     /// Numbers below 0.

@@ -27,7 +27,7 @@ pub struct Grid {
     origin: Option<Origin>,
 }
 
-/// What a grid holds, as it is stored.
+/// Contents of a grid, as they are stored.
 #[derive(Clone, Copy, Debug)]
 pub struct Stored<'a> {
     /// For each block, x varying fastest, then y: its place among the stored ones, or `u32::MAX` for zeros.
@@ -104,27 +104,27 @@ impl Grid {
         Ok(Grid::of_blocks("", size, to_object, places.to_vec(), voxels.to_vec(), scale))
     }
 
-    /// What it holds, as it is stored.
+    /// Contents of the grid, as they are stored.
     pub fn stored(&self) -> Stored<'_> {
         Stored { places: &self.places, voxels: &self.voxels, scale: self.scale }
     }
 
-    /// The same voxels elsewhere: `to_object` maps their coordinates.
+    /// Moves the voxels elsewhere: `to_object` maps their coordinates.
     pub fn placed(self, to_object: &Transform) -> Grid {
         Grid { to_voxels: to_object.inverted(), ..self }
     }
 
-    /// The same grid under another name.
+    /// Renames the grid.
     pub fn named(self, name: &str) -> Grid {
         Grid { name: name.to_owned(), ..self }
     }
 
-    /// The same grid with what it was made from.
+    /// Records what the grid was made from.
     pub fn with_origin(self, origin: Origin) -> Grid {
         Grid { origin: Some(origin), ..self }
     }
 
-    /// What it was made from, if that is known.
+    /// Origin of the grid, if that is known.
     pub fn origin(&self) -> Option<&Origin> {
         self.origin.as_ref()
     }
@@ -285,7 +285,7 @@ impl Grid {
         largest
     }
 
-    /// The same values with other majorants: larger ones, or wrong ones.
+    /// Copy with other majorants: larger ones, or wrong ones.
     #[cfg(test)]
     pub(crate) fn with_majorants_scaled(&self, factor: f32) -> Grid {
         Grid { majorants: self.majorants.iter().map(|bound| bound * factor).collect(), ..self.clone() }

@@ -6,7 +6,7 @@ use bilux_math::Vec3;
 /// A straight line through the voxels of a grid.
 #[derive(Clone, Copy, Debug)]
 pub struct GridLine {
-    /// Where it begins, in voxels.
+    /// Start of the line, in voxels.
     pub(super) origin: Vec3,
     /// Voxels per metre along each axis.
     pub(super) direction: Vec3,

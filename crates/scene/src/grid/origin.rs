@@ -1,10 +1,10 @@
-//! What a grid was made from.
+//! Origins of grids.
 
 use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
 
-/// What a grid was made from, for whoever writes it: its numbers say all else. So grids of the same numbers are equal.
+/// Origin of a grid, for whoever writes it: the grid's numbers say all else. So grids of the same numbers are equal.
 #[derive(Clone)]
 pub struct Origin(Arc<dyn Any + Send + Sync>);
 
@@ -14,7 +14,7 @@ impl Origin {
         Origin(Arc::new(of))
     }
 
-    /// What it is, if it is of this type.
+    /// Value that the grid was made from, if it is of this type.
     pub fn of<T: Any>(&self) -> Option<&T> {
         self.0.downcast_ref()
     }

@@ -1,4 +1,4 @@
-//! What one build of a scene made, kept for the next one: values by all that they were made from.
+//! Results of one build of a scene, kept for the next one: values by all that they were made from.
 
 mod mesh_pool;
 mod same;
@@ -60,7 +60,7 @@ impl<K: Eq + Hash, V: Clone> Kept<K, V> {
         }
     }
 
-    /// The same, where making cannot fail.
+    /// [`Kept::or_make`], where making cannot fail.
     pub(crate) fn or_make_surely(&mut self, key: K, make: impl FnOnce() -> V) -> V {
         match self.or_make(key, || Ok::<V, Infallible>(make())) {
             Ok(value) => value,

@@ -1,4 +1,4 @@
-//! What a material or a light is made from, as a key.
+//! Keys of materials and lights: all that one is made from.
 
 use super::Same;
 use crate::grid::Grid;

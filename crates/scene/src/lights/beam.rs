@@ -5,7 +5,7 @@ use bilux_math::Vec3;
 /// A cone from the middle of a lamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beam {
-    /// Its axis, a unit vector away from the lamp.
+    /// Axis of the cone, a unit vector away from the lamp.
     pub axis: Vec3,
     /// The cosine of the angle from the axis to its edge, above 0.
     pub cos: f32,
@@ -17,7 +17,7 @@ pub struct Beam {
 const MARGIN: f32 = 5e-7;
 
 impl Beam {
-    /// That of a light which goes no further from the axis than an angle of this cosine; `None` where that is more than half of all
+    /// Beam of a light that goes no further from the axis than an angle of this cosine; `None` where that is more than half of all
     /// directions.
     pub(crate) fn of_edge(axis: Vec3, cos: f32) -> Option<Beam> {
         (cos > MARGIN).then_some(Beam { axis, cos: cos - MARGIN, share: 1.0 })

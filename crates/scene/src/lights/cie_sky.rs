@@ -116,7 +116,7 @@ mod tests {
         [6, 6],
     ];
 
-    /// How bright a sky is at an elevation and an azimuth from the sun's, over the zenith; the sun stands 35 degrees high.
+    /// Luminance of a sky at an elevation and an azimuth from the sun's, over that of the zenith; the sun stands 35 degrees high.
     fn found(standard: i64, [elevation, azimuth]: [f64; 2]) -> f64 {
         let direction = |elevation: f64, azimuth: f64| {
             let ((sin_e, cos_e), (sin_a, cos_a)) =

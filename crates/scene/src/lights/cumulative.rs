@@ -15,7 +15,7 @@ pub(super) struct Cumulative {
 pub struct CumulativePart {
     /// The least of them.
     pub begin: f32,
-    /// The same as its probability implies, but for rounding.
+    /// `begin` as the probability implies it, the same but for rounding.
     below: f32,
     probability: f32,
 }

@@ -13,7 +13,7 @@ pub(super) fn disc_pdf_area(bounds: &Aabb) -> f32 {
     if pdf.is_finite() { pdf } else { 0.0 }
 }
 
-/// How light along a direction enters a scene, which must not be empty.
+/// Place where light along a direction enters a scene, which must not be empty.
 #[derive(Clone, Copy)]
 pub(super) enum Across {
     /// Through a uniform point of the disc.
@@ -51,7 +51,7 @@ pub(super) fn ray(
     })
 }
 
-/// Where the line through `p` along `direction` crosses the square around the disc: 0..=1 on both axes within it.
+/// Point at which the line through `p` along `direction` crosses the square around the disc: 0..=1 on both axes within it.
 pub(super) fn place_across(bounds: &Aabb, p: Vec3, direction: Vec3) -> Vec2 {
     let across = Frame::from_normal(direction);
     let d = (p - bounds.centre()) / bounds.radius();

@@ -19,7 +19,7 @@ struct Sums {
     guide: Vec<u16>,
 }
 
-/// How many points are chosen at a time.
+/// Number of points that are chosen at a time.
 pub(super) const MANY: usize = 64;
 
 /// A cell, and a position within it, 0..=1 from the left and from the top.

@@ -55,7 +55,7 @@ fn has_plain_floats(texture: &Texture) -> bool {
     is_plain && matches!(texture.image.texels, Texels::Floats { .. })
 }
 
-/// The same map with plain texels, if it is not too large.
+/// Map with decoded texels, if it is not too large.
 fn decoded(texture: Arc<Texture>) -> Arc<Texture> {
     let (width, height) = (texture.width(), texture.height());
     if !texture.image.is_whole() || width.saturating_mul(height) > MAX_DECODED {

@@ -1,10 +1,10 @@
-//! Where a finite light is, and in which directions it shines.
+//! Extent of a finite light: where it is, and in which directions it shines.
 
 use bilux_math::transcendental::{acos, sin_cos};
 use bilux_math::{Aabb, Vec3};
 use std::f32::consts::{FRAC_PI_2, PI};
 
-/// Where a light is and where it shines, or several together: bounds that leave no point out that it lights.
+/// Bounds of where a light is and where it shines, or of several lights: they leave no point out that a light reaches.
 /// [Conty Estevez & Kulla 2018]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightExtent {
@@ -12,7 +12,7 @@ pub struct LightExtent {
     pub bounds: Aabb,
     /// The directions in which its surfaces face.
     pub facing: DirectionCone,
-    /// How far from these it shines, in radians, at most π. It fades by the cosine.
+    /// Angle from these directions up to which it shines, in radians, at most π. It fades by the cosine.
     pub spread: f32,
     /// Whether it shines to the opposite side in the same way.
     pub both_sides: bool,

@@ -23,7 +23,7 @@ where
     find_from(sums, begin(guide, u), u)
 }
 
-/// Where the search for a number begins.
+/// Index at which the search for a number begins.
 #[inline(always)]
 pub(super) fn begin<S: Into<f64>, I: Copy + Into<u32>>(guide: &[I], u: S) -> usize {
     let part = (u.into() * guide.len() as f64) as usize;

@@ -1,4 +1,4 @@
-//! What a light source answers.
+//! Interface of a light source.
 
 use super::{Beam, EmissionSample, LightExtent, distant};
 use crate::classic::ClassicLight;
@@ -79,7 +79,7 @@ pub trait Light: LightTracing + ClassicLighting + Any + Send + Sync {
         None
     }
 
-    /// Where it is and where it shines, between these times in seconds; `None` for an infinite light.
+    /// Bounds of where it is and where it shines, between these times in seconds; `None` for an infinite light.
     fn extent(&self, _shutter: [f32; 2]) -> Option<LightExtent> {
         None
     }
@@ -102,7 +102,7 @@ pub struct Receiver {
     pub u: Vec2,
 }
 
-/// What light subpaths need of a light source: the rays that leave it.
+/// Light source as light subpaths see it: the rays that leave it.
 pub trait LightTracing {
     /// Samples a ray of light into a scene within `bounds`, at a time in seconds.
     ///
@@ -158,16 +158,16 @@ pub trait LightTracing {
     fn is_infinite(&self) -> bool;
 }
 
-/// What Equations 1 and 2 need of a light source.
+/// Light source as Equations 1 and 2 see it.
 pub trait ClassicLighting {
     /// The light under Equations 1 and 2, from its centre offset by `extent` (0..=1) of its size towards the point that
     /// `u` picks; `None` where it does not shine.
     fn classic(&self, from: Vec3, time: f32, u: Vec2, extent: f32) -> Option<ClassicLight>;
 
-    /// Its colour under Equations 1 and 2, for a scene within these bounds.
+    /// Colour under Equations 1 and 2, for a scene within these bounds.
     fn classic_colour(&self, bounds: &Aabb) -> Rgb;
 
-    /// Its contribution to the ambient light of Equations 1 and 2.
+    /// Contribution to the ambient light of Equations 1 and 2.
     fn classic_ambient(&self) -> Rgb {
         Rgb::BLACK
     }

@@ -7,7 +7,7 @@ use bilux_math::{Vec2, Vec3, warp};
 /// A triangle in world space at a time.
 #[derive(Clone, Copy, Debug)]
 pub struct LightTriangle {
-    /// Its corners, in metres.
+    /// Corners, in metres.
     pub corners: [Vec3; 3],
     /// Unit, towards the front; zero for a triangle without area.
     pub normal: Vec3,

@@ -34,7 +34,7 @@ pub struct MeshLight {
     motion: Motion,
     /// The triangles in world space, each with the density of its first piece; empty when they move.
     static_triangles: Vec<LightTriangle>,
-    /// How points choose among their pieces, if they are many.
+    /// Choice among the pieces by where the receiver is, if they are many.
     near: Option<NearTriangles>,
     /// The mean radiance over its area.
     radiance: Rgb,
@@ -45,11 +45,11 @@ pub struct MeshLight {
     classic: Option<Rgb>,
 }
 
-/// What a surface emits.
+/// Emission of a surface.
 pub struct SurfaceEmission {
     /// Everywhere, if there is no picture.
     pub radiance: Rgb,
-    /// What it is where it varies.
+    /// Emission where it varies.
     pub picture: Option<Picture>,
     /// From which sides.
     pub sides: Sides,
@@ -211,7 +211,7 @@ impl MeshLight {
         Some(self.pieces.at(triangle, weights / across.length_squared()))
     }
 
-    /// Its triangles with the random numbers that pick each, in their order, if they are few, do not move and emit
+    /// Triangles with the random numbers that pick each, in their order, if they are few, do not move and emit
     /// evenly.
     pub fn few_even_triangles(&self) -> Option<impl Iterator<Item = (LightTriangle, CumulativePart)>> {
         let is_even = self.picture.is_none() && !self.static_triangles.is_empty();

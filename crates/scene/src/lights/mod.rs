@@ -76,7 +76,7 @@ pub enum BuiltLight {
     },
     /// An emissive sphere; the builder adds it to the scene's spheres and makes its [`SphereLight`].
     Sphere {
-        /// Its centre, in world space.
+        /// Centre of the sphere, in world space.
         centre: Vec3,
         /// Positive.
         radius: f32,
@@ -127,8 +127,7 @@ pub fn build(spec: &Spec, textures: &[Arc<Texture>]) -> Result<BuiltLight, Scene
     (row.build)(&Reader::new(&spec, &row.entry)?, textures)
 }
 
-/// The same light with numbers in place of quantities such as `800 lm`, in the units of the table; the same where something is wrong with
-/// it.
+/// Light with numbers in place of quantities such as `800 lm`, in the units of the table; unchanged where something is wrong with it.
 pub fn in_numbers(spec: &Spec) -> Spec {
     let row = LIGHTS.iter().find(|row| row.entry.name == spec.kind);
     row.and_then(|row| in_numbers_of(spec, row).ok()).unwrap_or_else(|| spec.clone())

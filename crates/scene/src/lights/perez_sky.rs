@@ -70,7 +70,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
 /// Illuminance by the sun above the atmosphere, in lx.
 const ABOVE_THE_AIR: f64 = 127_500.0;
 
-/// How many times the vertical depth of the atmosphere the light of the sun passes, by its zenith angle in radians.
+/// Air mass: vertical depths of the atmosphere that the light of the sun passes, by its zenith angle in radians.
 /// \[Kasten 1966]
 fn air_mass(zenith: f64) -> f64 {
     let degrees = zenith.to_degrees().min(90.0);

@@ -48,8 +48,8 @@ const MAX_PIECES: usize = 1024;
 /// Triangles are cut where the brightness within them has a standard deviation of more than this, relative to the mean.
 const UNEVEN: f64 = 0.25;
 
-/// How to cut the triangles of these areas, the mean radiance over all of them, and the unnormalised probability of each piece, whose mean is
-/// about the piece's area.
+/// Pieces of the triangles of these areas, the mean radiance over all of them, and the unnormalised probability of each piece, whose
+/// mean is about the piece's area.
 pub(super) fn pieces_by_brightness(picture: &Picture, areas: &[f64]) -> (Pieces, Rgb, Vec<f64>) {
     let mut pieces = Pieces::up_to(picture.max_pieces.min(MAX_PIECES), areas.len());
     let mean_of = |i| picture.mean(pieces.triangle(i), pieces.piece(i));

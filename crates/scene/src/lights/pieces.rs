@@ -3,7 +3,7 @@
 use super::light_triangle::blend;
 use bilux_math::{Vec2, Vec3};
 
-/// How each triangle of a mesh is cut: into `side` times `side` pieces, which are similar to it. They have one number each, triangle by triangle.
+/// Pieces of each triangle of a mesh: `side` times `side`, which are similar to it. They have one number each, triangle by triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pieces {
     side: usize,
@@ -13,7 +13,7 @@ pub(super) struct Pieces {
 /// other piece is turned by half a circle, and has a scale below 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Piece {
-    /// Its first corner.
+    /// First corner of the piece.
     pub begin: Vec2,
     /// The length of its edges, over that of the triangle's.
     pub scale: f32,
@@ -30,7 +30,7 @@ impl Piece {
         [1.0 - second - third, second, third]
     }
 
-    /// Its corners in a triangle.
+    /// Corners of the piece in a triangle.
     pub(super) fn corners(self, triangle: &[Vec3; 3]) -> [Vec3; 3] {
         [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
             .map(|corner| blend(triangle, self.weights(corner)))
@@ -50,7 +50,7 @@ impl Pieces {
         Pieces { side: (1..=MAX_SIDE).take_while(fits).last().unwrap_or(1) }
     }
 
-    /// How many there are of each triangle.
+    /// Number of pieces of each triangle.
     #[inline]
     pub(super) fn of_each(self) -> usize {
         self.side * self.side

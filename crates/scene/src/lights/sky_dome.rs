@@ -19,8 +19,8 @@ const SIZE: [usize; 2] = [512, 256];
 /// Formulas that divide by the cosine of the zenith angle keep to this near the horizon.
 const LOWEST: f32 = 0.01;
 
-/// How bright a sky is by the angles Z from the zenith and χ from the sun: its gradation times 1 + c (exp(d χ) - f) + e cos² χ.
-/// \[CIE 2003; Perez 1993, eq. 1]
+/// Relative radiance of a sky by the angles Z from the zenith and χ from the sun: its gradation times
+/// 1 + c (exp(d χ) - f) + e cos² χ. \[CIE 2003; Perez 1993, eq. 1]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct SkyFormula {
     pub(super) gradation: Gradation,
@@ -30,7 +30,7 @@ pub(super) struct SkyFormula {
     pub(super) across: f32,
 }
 
-/// How bright a sky is by the angle from the zenith.
+/// Relative radiance of a sky by the angle from the zenith.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Gradation {
     /// 1 + a exp(b / cos Z), of a and b.
@@ -121,7 +121,7 @@ fn per(amount: f32) -> f32 {
     if amount > 0.0 && amount.is_finite() { 1.0 / amount } else { 0.0 }
 }
 
-/// What level ground receives of the rows of texels above the horizon: the integral of each over its row is exact.
+/// Irradiance of level ground by the rows of texels above the horizon: the integral of each over its row is exact.
 fn level_irradiance(above: &[f32]) -> f32 {
     let [width, height] = SIZE;
     let square = |row: usize| {

@@ -60,7 +60,7 @@ impl LightTree {
         Some((light, probability))
     }
 
-    /// The same, and what is left of the random number, from 0 to 1.
+    /// [`LightTree::sample`], and what is left of the random number, from 0 to 1.
     #[inline]
     pub(super) fn sample_with_rest(&self, p: Vec3, u: f32) -> Option<(usize, f32, f32)> {
         let mut walk = Walk { branch: 0, p, u, probability: 1.0 };

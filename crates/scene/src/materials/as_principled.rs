@@ -1,13 +1,13 @@
-//! What materials are as `principled`, for writers of files that know no other.
+//! Materials as `principled`, for writers of files that know no other.
 
 use crate::parameters::Spec;
 
-/// What a material is as `principled`.
+/// Conversion of a material to `principled`.
 #[derive(Clone, Copy, Debug)]
 pub struct AsPrincipled {
     /// The parameters that [`AsPrincipled::convert`] takes into account; the [`SHARED`] ones stay as they are.
     pub keeps: &'static [&'static str],
-    /// What is different about it, as the end of a sentence for users; empty where it looks the same.
+    /// Difference from the material, as the end of a sentence for users; empty where it looks the same.
     pub differs: &'static str,
     /// Adds its parameters to a spec of `principled`.
     pub convert: fn(material: &Spec, principled: Spec) -> Spec,

@@ -1,4 +1,4 @@
-//! What a material is made from, besides its own parameters.
+//! Inputs of a material, besides its own parameters.
 
 use crate::error::SceneError;
 use crate::parameters::{Reader, Spec};

@@ -13,7 +13,7 @@ use bilux_math::Rgb;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use std::sync::Arc;
 
-/// It has one in any case: without, it would be a surface that others refract against.
+/// Priority, which an interface has in any case: without one, it would be a surface that others refract against.
 const PRIORITY: Parameter = Parameter {
     name: "priority",
     summary: "where media overlap, the one with the higher priority fills the overlap, of equal ones the one inside the \
@@ -53,7 +53,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     principled: None,
 };
 
-/// What is on both sides alike.
+/// Boundary between sides that are alike.
 const NOTHING: Dielectric =
     Dielectric { eta: 1.0, dispersion: 0.0, tint: Rgb::WHITE, thin: true, film: None };
 

@@ -1,4 +1,4 @@
-//! What a material answers.
+//! Interface of a material.
 
 use crate::bsdf::{Bsdf, OpaqueBaseInputs, SmoothLobe};
 use crate::classic::ClassicMaterial;
@@ -11,7 +11,7 @@ use bilux_math::{Rgb, Vec3};
 
 /// The material of a surface.
 pub trait Material: Send + Sync {
-    /// How light scatters at a point.
+    /// BSDF at a point.
     fn bsdf(&self, surface: &Surface) -> Bsdf;
     /// True when its [`Bsdf`] is, everywhere, a single Lambertian lobe about the shading normal.
     fn is_lambertian(&self) -> bool {
@@ -21,7 +21,7 @@ pub trait Material: Send + Sync {
     fn lambertian_reflectance(&self, _surface: &Surface) -> Rgb {
         Rgb::BLACK
     }
-    /// That reflectance where it is the same everywhere, on meshes without colours at their vertices.
+    /// Reflectance of that lobe where it is the same everywhere, on meshes without colours at their vertices.
     fn constant_lambertian_reflectance(&self) -> Option<Rgb> {
         None
     }
@@ -42,7 +42,7 @@ pub trait Material: Send + Sync {
     fn smooth_lobe(&self) -> Option<SmoothLobe> {
         None
     }
-    /// The same point under Equations 1 and 2.
+    /// Material at a point under Equations 1 and 2.
     fn classic(&self, surface: &Surface) -> ClassicMaterial;
     /// The shading normal at a point, on the same side as `n_geom`: interpolated, or from a normal map.
     ///
@@ -86,11 +86,11 @@ pub trait Material: Send + Sync {
     fn disperses(&self) -> bool {
         false
     }
-    /// Its interior medium for overlapping objects; `None` if it takes no part in nesting.
+    /// Interior medium for overlapping objects; `None` if it takes no part in nesting.
     fn nested(&self) -> Option<Nested> {
         None
     }
-    /// The same where it touches another such medium: there it takes part even without a priority, as of priority 1.
+    /// [`Material::nested`] in contact with another such medium: then it takes part even without a priority, as of priority 1.
     fn in_contact(&self) -> Option<Nested> {
         self.nested()
     }
@@ -106,7 +106,7 @@ pub trait Material: Send + Sync {
     fn is_pane(&self) -> bool {
         false
     }
-    /// What its inside is filled with; `None` where there is no inside that light enters: behind opaque surfaces and thin walls.
+    /// Medium of the inside; `None` where there is no inside that light enters: behind opaque surfaces and thin walls.
     fn medium(&self) -> Option<Medium<'_>> {
         None
     }

@@ -64,7 +64,7 @@ pub struct MaterialEntry {
     pub entry: Entry,
     /// Makes one from its parameters.
     pub build: BuildMaterial,
-    /// What it is as `principled`; `None` for `principled` itself, for mixtures, and for whatever looks like nothing that
+    /// Conversion to `principled`; `None` for `principled` itself, for mixtures, and for whatever looks like nothing that
     /// `principled` can be: files then get a plain material, and the writer warns.
     pub principled: Option<AsPrincipled>,
 }

@@ -19,7 +19,7 @@ pub(super) const OPACITY: Parameter = Parameter {
     default: "1",
 };
 
-/// That of a pane that is as clear as air.
+/// Opacity of a pane that is as clear as air.
 pub(super) static ABSENT: NumberMap = NumberMap { number: 0.0, range: [0.0; 2], texture: None };
 
 /// The opacity, if it may be below 1.

@@ -20,7 +20,7 @@ pub struct Glow {
     temperature: Option<Temperature>,
 }
 
-/// How the radiance of a black body depends on a temperature.
+/// Radiance of a black body by its temperature.
 #[derive(Clone, Debug, PartialEq)]
 struct Temperature {
     grid: Arc<Grid>,

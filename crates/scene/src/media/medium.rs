@@ -1,4 +1,4 @@
-//! What a medium is, and how light passes one that is the same everywhere.
+//! Media, and how light passes one that is the same everywhere.
 
 use super::glow::{Glow, GlowLine};
 use super::phases::{HenyeyGreenstein, Phase, read_phase};
@@ -31,14 +31,14 @@ pub struct MediumLine {
     pub(super) glow: Option<GlowLine>,
 }
 
-/// What a path meets on a line through a medium.
+/// Transmittance of a line through a medium, and the probabilities of events on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreePath {
     /// The fraction of light that comes this far.
     pub transmittance: Rgb,
     /// The probability that a walk comes this far without an event.
     pub survival: f32,
-    /// The same for a walk in each channel.
+    /// `survival` for a walk in each channel.
     pub survivals: Rgb,
     /// The density of an event per metre, where a walk came this far: at the beginning of the line, by a walk from its end, and at its
     /// end.
@@ -133,7 +133,7 @@ impl Medium<'_> {
         thickness(u) / self.sigma_t()[channel]
     }
 
-    /// What a walk in a channel meets over a distance, where it is the same everywhere.
+    /// Free path of a walk in a channel over a distance, where the medium is the same everywhere.
     ///
     /// Where nothing is scattered there are no events: a walk passes for certain, and carries less.
     #[inline]

@@ -1,12 +1,12 @@
-//! What an eye sees of a medium along a line: how much light it would scatter or emit there, how far away, and how much of what lies
-//! behind still shows. These are expected values, for whoever compares pixels: an estimate by a walk would be noise.
+//! View of a medium along a line: how much light it would scatter or emit there, how far away, and how much of what lies
+//! behind still shows. These are expected values, for comparing pixels: an estimate by a walk would be noise.
 
 use super::medium::{Medium, MediumLine, beer, mean};
 use super::tracking::Draws;
 use crate::grid::{BLOCK, Grid, GridLine};
 use bilux_math::Rgb;
 
-/// What is seen along a line through a medium.
+/// Light that is seen along a line through a medium.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
     /// The fraction of light that passes from the far end of the line, in `0..=1`.
@@ -24,7 +24,7 @@ pub struct Seen {
 /// Parts of a line whose optical thickness can be no more than this are looked at in one point.
 const THIN: f32 = 0.01;
 
-/// Where less than this passes, nothing behind is looked at.
+/// Transmittance below which nothing behind is looked at.
 const NOTHING: f32 = 1e-4;
 
 impl Seen {
@@ -39,7 +39,7 @@ impl Seen {
 }
 
 impl Medium<'_> {
-    /// What is seen along a line of this length in metres; `line` is the same in the voxels of its grids, if it has any.
+    /// Light that is seen along a line of this length in metres; `line` is the same in the voxels of the grids, if there are any.
     ///
     /// An even medium has a closed form. The density of a grid is integrated by a sum over steps of at most a voxel, each at a point
     /// that `draws` choose: the optical thickness has no bias, and hardly any noise.

@@ -12,12 +12,12 @@ use crate::grid::{Grid, GridLine};
 use bilux_math::Rgb;
 use bilux_math::hash::{mix64, unit_f32};
 
-/// What a walk along a part of a ray has met.
+/// Result of a walk along a part of a ray.
 #[derive(Clone, Copy, Debug)]
 pub struct Flight {
-    /// What lies between its ends.
+    /// Free path from the beginning of the walk to its end.
     pub path: FreePath,
-    /// What ended it; `None` where it came to the end of the part.
+    /// Event that ended the walk; `None` where it came to the end of the part.
     pub event: Option<MediumEvent>,
     /// The light that the medium emits back along it, over the density with which walks come to where it is emitted.
     pub emitted: Rgb,
@@ -26,16 +26,16 @@ pub struct Flight {
 /// The channel whose distances a walk has.
 #[derive(Clone, Copy, Debug)]
 pub struct WalkChannel {
-    /// Its index.
+    /// Index of the channel.
     pub index: usize,
-    /// How likely walks in each channel have come this far, over the mean.
+    /// Probability that a walk in each channel has come this far, over the mean.
     pub odds: Rgb,
 }
 
 /// An event of a medium.
 #[derive(Clone, Copy, Debug)]
 pub struct MediumEvent {
-    /// Where it is on the line, in metres.
+    /// Distance on the line, in metres.
     pub distance: f32,
     /// The scattering coefficient there, per metre.
     pub sigma_s: Rgb,
@@ -43,7 +43,7 @@ pub struct MediumEvent {
     pub sigma_t: Rgb,
 }
 
-/// Where less than this passes, an estimate goes on with a probability of 1 over `ONE_OF`.
+/// Transmittance below which an estimate goes on with a probability of 1 over `ONE_OF`.
 const LITTLE: f32 = 0.05;
 const ONE_OF: f32 = 4.0;
 
@@ -52,7 +52,7 @@ const ONE_OF: f32 = 4.0;
 pub struct Draws(u64);
 
 impl Draws {
-    /// Those of a seed.
+    /// Random numbers of a seed.
     #[inline]
     pub fn new(seed: u64) -> Draws {
         Draws(seed)
@@ -98,7 +98,7 @@ impl Medium<'_> {
         Flight { path, event, emitted }
     }
 
-    /// What lies along a line of this length in metres, for light that passes; in a grid an estimate of it.
+    /// Free path along a line of this length in metres, for light that passes; in a grid an estimate of it.
     #[inline]
     pub fn passed(
         &self,
@@ -368,7 +368,7 @@ mod tests {
         );
     }
 
-    /// The same light reaches an event, whatever lies behind it, and hazards are those of both ends.
+    /// Events get the same light, whatever lies behind them, and hazards are those of both ends.
     #[test]
     fn densities_at_both_ends_are_those_of_the_grid() {
         let grid = column();

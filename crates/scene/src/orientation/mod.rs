@@ -15,11 +15,11 @@ pub struct Orientation {
     pub up: Axis,
     /// The axis that points to the front.
     pub front: Axis,
-    /// How this is known.
+    /// Source of the orientation.
     pub source: OrientationSource,
 }
 
-/// How the orientation of a model is known.
+/// Source of a model's orientation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OrientationSource {
     /// The user asked for it.

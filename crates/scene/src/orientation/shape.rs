@@ -22,7 +22,7 @@ const CELLS: usize = 24;
 /// The part of the bounding box that a foot has to cover for a shape to stand on it.
 const STEADY: f64 = 0.1;
 
-/// How far from 0, relative to its height, the lowest point of a shape on the ground plane may be.
+/// Maximum distance from 0, relative to its height, of the lowest point of a shape on the ground plane.
 const ON_GROUND: f64 = 0.005;
 
 /// The measurements.

@@ -7,7 +7,7 @@ use bilux_math::colour::srgb_decode;
 use bilux_math::photometry::LUMENS_PER_WATT;
 use bilux_math::registry::Parameter;
 
-/// What a unit measures.
+/// Quantity that a unit measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Measure {
     /// Light in all directions together.
@@ -56,7 +56,7 @@ const KELVIN: [&str; 2] = ["K", "kelvin"];
 const TEMPERATURES: [f64; 2] = [500.0, 100_000.0];
 
 impl Measure {
-    /// What a parameter with this unit of the tables takes; empty where it is no light.
+    /// Quantities that a parameter with this unit of the tables takes; empty where it is no light.
     pub(crate) fn of_unit(unit: &str) -> &'static [Measure] {
         match unit {
             "W" => &[Measure::Flux],
@@ -76,7 +76,7 @@ impl Measure {
         }
     }
 
-    /// What else it could be given as.
+    /// Clause for messages: the parameters that take this quantity.
     fn advice(self) -> &'static str {
         match self {
             Measure::Flux => ", which the intensity of a lamp takes",
@@ -97,7 +97,7 @@ pub fn units_of(unit: &str) -> Vec<&'static str> {
 /// A quantity of light, and its colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Quantity {
-    /// What it measures; `None` for a colour alone.
+    /// Measured quantity; `None` for a colour alone.
     pub(crate) measure: Option<Measure>,
     /// In radiometric units, its luminance the amount; a colour alone has luminance 1.
     pub(crate) colour: Rgb,
@@ -142,7 +142,7 @@ impl Quantity {
         }
     }
 
-    /// The same, for a parameter with this unit.
+    /// [`Quantity::read`] for a parameter with this unit.
     ///
     /// # Errors
     /// Also when it measures something else.

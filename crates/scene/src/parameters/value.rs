@@ -34,7 +34,7 @@ impl Value {
         Value::List(v.map(|c| Value::Number(f64::from(c))).to_vec())
     }
 
-    /// The same quantity where all lengths are `scale` times as large; `unit` is that of its row (`m`, `W`).
+    /// Scales the quantity for lengths that are all `scale` times as large; `unit` is that of its row (`m`, `W`).
     ///
     /// Texts and textures stay, as do zeros and negative numbers, which stand for none.
     pub fn scale_lengths(&mut self, unit: &str, scale: f64) {

@@ -9,8 +9,7 @@ use std::sync::Arc;
 /// Visibility times extinction: at that distance a black body has 2% of the contrast that it has close by. [Koschmieder 1924]
 const VISIBILITY: f32 = 3.912;
 
-/// How high above and below everything fog reaches, over the visibility: less than how far it reaches sideways, so that the sky lights
-/// it.
+/// Height of fog above and below everything, over the visibility: less than the reach of fog sideways, so that the sky lights it.
 const HEIGHT: f32 = 0.25;
 
 /// Fills a scene with fog in which people see this many metres far, if it is given. It reaches as far beyond the objects and cameras.

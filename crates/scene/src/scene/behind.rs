@@ -1,4 +1,4 @@
-//! What is behind boundaries of media, and behind which of them a point is.
+//! Media behind boundaries, and the boundaries behind which a point is.
 
 use super::open_boundaries::{Behind, OpenBoundary};
 use super::parts::SceneParts;

@@ -1,4 +1,4 @@
-//! How far points of a dense medium are from the surfaces around: a ball of less than this radius is all medium.
+//! Distance of points of a dense medium from the surfaces around: a ball of less than this radius is all medium.
 
 use crate::corners::world_corners;
 use crate::geometry::Geometry;
@@ -20,8 +20,8 @@ pub(super) struct Clearance {
 const DENSE: f32 = 8.0;
 
 impl Clearance {
-    /// That of all media that are the same everywhere and do not move. Where the triangles around are too many for a tree, none counts as
-    /// dense.
+    /// Clearance of all media that are the same everywhere and do not move. Where the triangles around are too many for a tree, no
+    /// medium counts as dense.
     pub(super) fn of(geometry: &Geometry, materials: &[Arc<dyn Material>]) -> Clearance {
         let bounds = |placed: &Placed| Some(placed.motion.static_transform()?.bounds(&placed.mesh.bounds()));
         let dense_bounds = |placed: &Placed| {

@@ -20,7 +20,7 @@ struct Body {
     object: usize,
     bounds: Aabb,
     takes_part: bool,
-    /// It is known to touch another.
+    /// Whether it is known to touch another.
     touches: bool,
 }
 

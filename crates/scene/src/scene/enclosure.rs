@@ -1,4 +1,4 @@
-//! What is known of the boundary of a medium before a ray is traced.
+//! Facts about the boundary of a medium that are known before a ray is traced.
 
 use super::may_pass::MayPass;
 use super::nesting::Nesting;
@@ -12,16 +12,16 @@ use std::sync::Arc;
 /// The boundary of a medium that nothing leaves unseen: a closed mesh without holes, which does not move.
 #[derive(Clone, Copy, Debug)]
 pub struct Enclosure {
-    /// What is outside of these is outside of the medium.
+    /// Bounds of the medium: everything outside of them is outside of it.
     pub bounds: Aabb,
-    /// It is a surface, which blocks whatever is connected through it.
+    /// Whether it is a surface, which blocks whatever is connected through it.
     pub is_solid: bool,
     /// A light may be inside.
     pub holds_light: bool,
 }
 
 impl Enclosure {
-    /// Those of all objects: none where the material has no medium that scatters, or the mesh is open or moves.
+    /// Enclosures of all objects: none where the material has no medium that scatters, or the mesh is open or moves.
     pub(super) fn of_all(
         geometry: &Geometry,
         materials: &[Arc<dyn Material>],
@@ -81,7 +81,7 @@ fn is_cut_open(
     is_like(Some(Nested::AIR)) || geometry.objects().iter().enumerate().any(opens)
 }
 
-/// Where the lights are that are not infinitely far away.
+/// Bounds of the lights that are not infinitely far away.
 fn lit_places(geometry: &Geometry, lights: &[SceneLight], object_lights: &[Option<u32>]) -> Vec<Aabb> {
     const ANYWHERE: Aabb = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
     let of_object = |placed: &Placed| {

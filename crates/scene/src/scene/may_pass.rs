@@ -1,4 +1,4 @@
-//! What may let rays pass.
+//! Objects that may let rays pass.
 
 use crate::geometry::Geometry;
 use crate::materials::Material;
@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// Which rays an object may let pass.
 #[derive(Clone, Copy)]
 pub(super) struct MayPass {
-    /// It has an opacity mask, or vertices with an opacity.
+    /// Whether the object has an opacity mask, or vertices with an opacity.
     pub(super) has_holes: bool,
     /// The camera sees through its back.
     pub(super) is_one_sided: bool,
@@ -19,7 +19,7 @@ pub(super) struct MayPass {
 }
 
 impl MayPass {
-    /// That of each object, then of each sphere.
+    /// `MayPass` of each object, then of each sphere.
     pub(super) fn of_all(geometry: &Geometry, materials: &[Arc<dyn Material>]) -> Vec<MayPass> {
         let count = geometry.objects().len() + geometry.spheres().len();
         let material = |object: u32| &*materials[geometry.material_of(object) as usize];

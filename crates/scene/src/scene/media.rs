@@ -1,4 +1,4 @@
-//! What a scene is filled with, and what light passes.
+//! Media that fill a scene, and surfaces that light passes.
 
 use super::Scene;
 use super::enclosure::Enclosure;

@@ -14,8 +14,8 @@ use std::sync::Arc;
 /// The pictures of a scene's lights are cut into up to so many pieces, all together: a city has thousands of windows.
 const MAX_PIECES: usize = 1 << 16;
 
-/// What a light was made from: mesh, place, material, whether the object has a tree of its own, its first triangle,
-/// the bits of its classic colour, and into how many pieces its picture may be cut.
+/// Key of a light, all that it was made from: mesh, place, material, whether the object has a tree of its own, its first
+/// triangle, the bits of its classic colour, and into how many pieces its picture may be cut.
 type Key = (Same<Mesh>, Place, Same<dyn Material>, bool, Primitive, Option<[u32; 3]>, usize);
 
 /// The lights of objects that do not move; `None` for one without area.

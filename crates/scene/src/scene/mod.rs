@@ -98,7 +98,7 @@ impl Scene {
         }
     }
 
-    /// The same scene at another time: rebuilds only the top level.
+    /// Scene at another time; only the top level is rebuilt.
     pub fn at(&self, accel: &AccelChoice, shutter: [f32; 2]) -> Scene {
         let scene = Scene::new(self.parts.clone(), accel, shutter, &mut Top::default());
         match &self.view {
@@ -107,7 +107,7 @@ impl Scene {
         }
     }
 
-    /// The same scene with its textures filtered for images by a camera, with this many rows of pixels.
+    /// Scene with its textures filtered for images by a camera, with this many rows of pixels.
     ///
     /// Detail finer than half a pixel is averaged, so that fewer samples suffice. Emission and opacity stay as they
     /// are.
@@ -226,7 +226,7 @@ impl Scene {
         self.parts.nesting.ranks.get(object as usize).copied().unwrap_or(0)
     }
 
-    /// How far a ray may travel inside an object whose medium changes light and has no priority, if it begins in
+    /// Distance that a ray may travel inside an object whose medium changes light and has no priority, if it begins in
     /// one: up to where it leaves the objects' bounds. `None` where it begins in none.
     pub fn absorption_distance(&self, ray: &Ray) -> Option<f32> {
         let (origin, direction) = (Vec3::from(ray.origin), Vec3::from(ray.direction));
@@ -261,7 +261,7 @@ impl Scene {
         self.cpu_level
     }
 
-    /// How the surfaces of an object scatter, for shading many at a time.
+    /// Scattering of the surfaces of an object, for shading many at a time.
     #[inline]
     pub fn shading(&self, object: u32) -> Shading {
         self.parts.shading.get(object as usize).map_or(Shading::General, |object| object.kind)

@@ -8,7 +8,7 @@ use bilux_math::{Aabb, Vec3};
 use std::cmp::Reverse;
 use std::sync::Arc;
 
-/// How many media a path may be in at a time.
+/// Maximum number of media that a path may be in at a time.
 pub const MAX_NESTED: usize = 8;
 
 /// So many objects, the largest, are taken into account as what may be around others.
@@ -28,7 +28,7 @@ pub(super) struct Nesting {
 struct Nested {
     index: usize,
     priority: u32,
-    /// Those of everything for what is open: it has none of its own.
+    /// Bounds of the object; of everything for what is open, which has none of its own.
     bounds: Aabb,
     /// The edges of its bounds.
     size: f32,

@@ -23,7 +23,7 @@ pub(super) struct OpenBoundaries {
     bodies: Vec<u32>,
     /// The objects that stand for one.
     stand_in: HashSet<u32>,
-    /// Those that are open as a whole.
+    /// Bodies that are open as a whole.
     pub(super) open: Vec<OpenBoundary>,
 }
 
@@ -97,7 +97,7 @@ impl OpenBoundaries {
 }
 
 impl<'a> Sheet<'a> {
-    /// That of an object, at time 0; `None` where it is closed or next to that.
+    /// Sheet of an object, at time 0; `None` where it is closed or next to that.
     fn of(object: u32, placed: &'a Placed) -> Option<Sheet<'a>> {
         let to_world = placed.motion.at(0.0);
         let positions = &placed.mesh.positions;
@@ -113,7 +113,7 @@ impl<'a> Sheet<'a> {
 }
 
 impl OpenBoundary {
-    /// That of some sheets; `None` where they close each other. The points are spread over all triangles by their numbers.
+    /// Boundary of some sheets; `None` where they close each other. The points are spread over all triangles by their numbers.
     fn of(sheets: &[Sheet]) -> Option<OpenBoundary> {
         let area: DVec3 = sheets.iter().map(|sheet| sheet.area).sum();
         let all: f64 = sheets.iter().map(|sheet| sheet.area.length()).sum();
@@ -140,7 +140,7 @@ impl OpenBoundary {
     }
 }
 
-/// What is known of the open boundaries around a point.
+/// Open boundaries behind which a point is, as far as they are known.
 #[derive(Default)]
 pub(super) struct Behind {
     /// The point and its time, in bits, if it is known.

@@ -1,4 +1,4 @@
-//! What a scene consists of at all times.
+//! Parts of a scene that are the same at all times.
 
 use super::clearance::Clearance;
 use super::enclosure::Enclosure;

@@ -13,7 +13,7 @@ pub struct SceneLight {
     pub group: String,
     /// The light.
     pub light: Arc<dyn Light>,
-    /// Its colour in `cast`, `whitted` and `cook`.
+    /// Colour of the light in `cast`, `whitted` and `cook`.
     pub classic_colour: Rgb,
 }
 

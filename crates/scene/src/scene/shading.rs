@@ -6,7 +6,7 @@ use crate::placed::Placed;
 use bilux_math::Rgb;
 use std::sync::Arc;
 
-/// How the surfaces of an object scatter.
+/// Scattering of the surfaces of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shading {
     /// By one Lambertian lobe; they emit nothing.

@@ -15,7 +15,7 @@ impl Scene {
         self.parts.geometry.is_still_triangle(hit).then_some(reflectance)
     }
 
-    /// The same for the lobe of a mirror or of smooth glass.
+    /// [`Scene::lambertian_triangle`] for the lobe of a mirror or of smooth glass.
     #[inline]
     pub fn smooth_triangle(&self, object: u32, hit: &Hit) -> Option<SmoothLobe> {
         let lobe = self.parts.shading.get(object as usize)?.smooth?;

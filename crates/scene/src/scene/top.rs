@@ -9,7 +9,7 @@ use bilux_accel::instancing::TwoLevel;
 use bilux_math::motion::Motion;
 use std::sync::Arc;
 
-/// Those of the last build, with what they were made from.
+/// Top level and sheets of the last build, with what they were made from.
 #[derive(Clone, Default)]
 pub(crate) struct Top(Option<Known>);
 

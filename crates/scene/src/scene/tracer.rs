@@ -134,7 +134,7 @@ pub struct Tracer<'s> {
     counting: bool,
     /// The surface point on which the current rays end.
     end: Option<End>,
-    /// What the rays of a batch hit.
+    /// Primitives that the rays of a batch hit.
     blockers: Vec<Option<Primitive>>,
     /// The open boundaries around the last point that asked for them.
     pub(super) behind: Behind,
@@ -261,7 +261,7 @@ impl<'s> Tracer<'s> {
         surface
     }
 
-    /// The same with the interpolated normal.
+    /// [`Tracer::surface`] with the interpolated normal.
     #[inline]
     fn smooth_surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         let scene = self.scene;

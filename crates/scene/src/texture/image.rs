@@ -110,7 +110,7 @@ impl Image {
         Image::blended([bytes[a], bytes[b], bytes[c], bytes[d]], at, channel, is_data)
     }
 
-    /// The same for four texels that were read before.
+    /// [`Image::bilinear`] for four texels that were read before.
     #[inline(always)]
     pub(super) fn blended(
         texels: [[u8; 4]; 4],

@@ -165,7 +165,7 @@ impl<T: Copy> Covered<'_, T> {
     }
 }
 
-/// How much texel `i` of the next level covers of texels `2 * i` and the next two, in a row of `n`.
+/// Parts of texels `2 * i` and the next two that texel `i` of the next level covers, in a row of `n`.
 ///
 /// If `n` is odd, it covers slightly more than two.
 fn parts(i: usize, n: usize) -> [u32; 3] {
@@ -206,7 +206,7 @@ fn each<S: Copy + Sync, T: Default + Copy + Send>(
     texels
 }
 
-/// How bytes are averaged: the value of each byte in 65,535ths, and the nearest byte of each such value.
+/// Tables for averaging bytes: the value of each byte in 65,535ths, and the nearest byte of each such value.
 struct Curve {
     light: [u16; 256],
     bytes: Vec<u8>,

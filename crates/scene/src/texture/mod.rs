@@ -25,15 +25,15 @@ use std::sync::Arc;
 pub struct Texture {
     /// The file that it came from, relative to the scene.
     pub name: String,
-    /// Its texels; textures may share them.
+    /// Texels; textures may share them.
     pub image: Arc<Image>,
-    /// It holds numbers, such as roughness, rather than colours: files store them without a curve.
+    /// Whether it holds numbers, such as roughness, rather than colours: files store numbers without a curve.
     pub is_data: bool,
-    /// Its values beyond its left and right edges, and beyond its upper and lower edges.
+    /// Values beyond the left and right edges, and beyond the upper and lower edges.
     pub wrap: [Wrap; 2],
-    /// Its values between texels.
+    /// Values between texels.
     pub filter: Filter,
-    /// Its placement, if it is not from 0 to 1.
+    /// Placement, if it is not from 0 to 1.
     pub transform: Option<UvTransform>,
     /// A factor on every texel; for a single channel, red.
     pub factor: Rgb,
@@ -41,7 +41,7 @@ pub struct Texture {
     pub channel: Option<Channel>,
     /// If given, filtered values below it become 0, and all others 1.
     pub threshold: Option<f32>,
-    /// It uses the second set of texture coordinates.
+    /// Whether it uses the second set of texture coordinates.
     pub second_uv: bool,
     /// The coarser levels of the image, once a render has asked for them.
     pub levels: Levels,
@@ -65,7 +65,7 @@ impl Texture {
         }
     }
 
-    /// The same from `width * height` texels in rows, the top one first.
+    /// [`Texture::of`] from `width * height` texels in rows, the top one first.
     pub fn new(name: &str, width: usize, height: usize, texels: Vec<Rgb>, is_data: bool) -> Texture {
         let texels = Texels::Floats { colours: texels, alpha: Vec::new() };
         Texture::of(name, Arc::new(Image { width, height, texels }), is_data)

@@ -78,7 +78,7 @@ impl UvTransform {
         (self.offset.to_array(), turn, [self.u.length(), self.v.length() * sign])
     }
 
-    /// Its numbers, to the bit: the factors of u, those of v, and the translation.
+    /// Numbers of the placement, to the bit: the factors of u, those of v, and the translation.
     pub fn to_array(&self) -> [f32; 6] {
         [self.u.x, self.u.y, self.v.x, self.v.y, self.offset.x, self.offset.y]
     }

@@ -11,11 +11,11 @@ pub(crate) struct LookUps(Vec<LookUp>);
 
 struct LookUp {
     texture: Arc<Texture>,
-    /// It is looked up in a patch, otherwise at a point.
+    /// Whether it is looked up in a patch, otherwise at a point.
     is_filtered: bool,
-    /// Its texels are bytes, and it blends four of them.
+    /// Whether its texels are bytes, and it blends four of them.
     is_of_bytes: bool,
-    /// Its placement is that of the one before.
+    /// Whether its placement is that of the one before.
     is_placed_alike: bool,
 }
 
@@ -31,7 +31,7 @@ pub(crate) const AT_ONCE: usize = 16;
 
 const NO_PATCH: Patch = Patch { at: UvPair([Vec2::ZERO; 2]), width: [Vec2::ZERO; 2] };
 
-/// Where four texels are.
+/// Location of four texels.
 #[derive(Clone, Copy)]
 struct Place<'a> {
     bytes: &'a [[u8; 4]],
@@ -66,12 +66,12 @@ impl LookUps {
         self.add(map.texture.as_ref(), true);
     }
 
-    /// The same for a number, which is looked up at points: few numbers of a material are proportional to the light.
+    /// [`LookUps::add_colour`] for a number, looked up at points: few numbers of a material are proportional to the light.
     pub(crate) fn add_number(&mut self, map: &NumberMap) {
         self.add(map.texture.as_ref(), false);
     }
 
-    /// The same for a texture that is looked up at points.
+    /// Look-up of one texture at points.
     pub(crate) fn of_points(texture: &Arc<Texture>) -> LookUps {
         let mut one = LookUps::default();
         one.add(Some(texture), false);
@@ -139,7 +139,7 @@ impl LookUps {
 }
 
 impl LookUp {
-    /// Where its texels are; `last` is the place in the texture before.
+    /// Location of its texels; `last` is the place in the texture before.
     #[inline(always)]
     fn place<'a>(&'a self, patch: &Patch, last: &Place) -> Place<'a> {
         let texture = &*self.texture;

@@ -1,4 +1,4 @@
-//! Where textures are looked up.
+//! Positions at which textures are looked up.
 
 use bilux_math::Vec2;
 
@@ -25,9 +25,9 @@ impl From<Vec2> for UvPair {
 /// The part of a texture that a pixel sees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch {
-    /// Its position.
+    /// Position of the patch.
     pub at: UvPair,
-    /// Its width along each coordinate, for each set; 0 for a point.
+    /// Width of the patch along each coordinate, for each set; 0 for a point.
     pub width: [Vec2; 2],
 }
 

@@ -11,7 +11,7 @@ fn camera(spec: &Spec, aspect: f32) -> Arc<dyn Camera> {
     build(&CameraSpec::new(spec.clone()), aspect).unwrap()
 }
 
-/// How the two eyes of stereo are in a picture: columns and rows of parts, and the values of the parameter.
+/// Layouts of the two eyes of stereo in a picture: columns and rows of parts, and the values of the parameter.
 const LAYOUTS: [(&str, [f64; 2]); 5] = [
     ("none", [1.0, 1.0]),
     ("left", [1.0, 1.0]),
@@ -20,7 +20,7 @@ const LAYOUTS: [(&str, [f64; 2]); 5] = [
     ("over-under", [1.0, 2.0]),
 ];
 
-/// What lies between the rays of two points of the film: an angle, and a distance for parallel rays.
+/// Separation of the rays of two points of the film: an angle, and a distance for parallel rays.
 fn between(camera: &dyn Camera, film: DVec2, step: DVec2) -> f64 {
     let [a, b] = [film - step * 0.5, film + step * 0.5].map(|film| camera.ray_f64(film, 0.0).unwrap());
     a[1].cross(b[1]).length() + (a[0] - b[0]).length()
@@ -149,8 +149,8 @@ fn number(x: f32) -> Value {
     Value::from(x)
 }
 
-/// Where all rays through the lens meet that belong to a point of the film, as a distance along the axis; and how far they are
-/// from there at most.
+/// Maximum distance, at a depth along the axis, between the ray of a point of the film through the middle of the lens and
+/// its other rays.
 fn focus_of(camera: &dyn Camera, film: Vec2, time: f32, depth: f32) -> f32 {
     let discs = [[0.0, 0.0], [0.9, 0.1], [-0.7, 0.6], [0.1, -0.95], [-0.3, -0.4]].map(Vec2::from);
     let forward = camera.forward(time);
@@ -221,7 +221,7 @@ fn two_values(parameter: &Parameter) -> Option<[Value; 2]> {
     })
 }
 
-/// What a camera's rays are at a time, with a lens.
+/// Rays of a camera at a time, with a lens.
 fn rays(camera: &dyn Camera, time: f32) -> Vec<f32> {
     let films = [[0.5, 0.5], [0.3, 0.6], [0.75, 0.55]].map(Vec2::from);
     let lens = Vec2::new(0.6, -0.5);

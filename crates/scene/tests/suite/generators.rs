@@ -365,7 +365,7 @@ fn the_interior_grows_with_its_detail_and_everything_is_in_the_room() {
     assert!((200_000..300_000).contains(&triangles(2)));
 }
 
-/// What is charged before a scene is made is about what it then has, with each mesh once.
+/// Triangles charged before a scene is made are about those that it then has, with each mesh once.
 #[test]
 fn generators_know_how_many_triangles_they_make() {
     let sized = |name: &str, key: &str, size: i64| Spec::new("", name).with(key, Value::Integer(size));

@@ -26,7 +26,7 @@ struct Place {
 const LIGHT: f32 = 2.0;
 /// Distances to the nearest point of the light, in radii or half edges.
 const DISTANCES: [f32; 5] = [1e-4, 1e-2, 1.0, 1e3, 1e6];
-/// What a quadrature may be off.
+/// Maximum relative error of a quadrature.
 const ALLOWED: f64 = 5e-3;
 
 fn place(
@@ -186,7 +186,7 @@ fn add_panel(builder: &mut SceneBuilder, kind: usize, middle: Vec3, u: Vec3, v: 
     builder.objects.push(Object { motion, instanced: kind == 2, ..Object::new("panel", mesh, glowing) });
 }
 
-/// What is found at a point of the unit square: a value, and the point of a light that was sampled.
+/// Value found at a point of the unit square, and the point of a light that was sampled.
 type Found = (f64, Option<Vec3>);
 
 /// The integral over the unit square, in cells that are small beside the distance to what they find, and where they find the
@@ -266,7 +266,7 @@ fn by_directions(place: &Place, light: &dyn Light, weight: impl Fn(f32, f32) -> 
         })
 }
 
-/// How far off an estimate is, relative to what is right.
+/// Error of an estimate, relative to what is right.
 fn off(found: f64, expected: f64) -> f64 {
     if expected == 0.0 { found.abs() } else { (found / expected - 1.0).abs() }
 }

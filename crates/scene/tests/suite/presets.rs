@@ -26,12 +26,12 @@ fn teapot() -> SceneBuilder {
     scene_of(Teapot::default().mesh())
 }
 
-/// Where the scene's camera sees a point, -1..=1 within a square image; derived from the camera's own rays.
+/// Position at which the scene's camera sees a point, -1..=1 within a square image; derived from the camera's own rays.
 fn seen_at(scene: &SceneBuilder, p: Vec3) -> Option<Vec2> {
     seen_in(scene, p, 1.0)
 }
 
-/// Where a point is seen, from -1 to 1, in an image `aspect` times as wide as high.
+/// Position at which a point is seen, from -1 to 1, in an image `aspect` times as wide as high.
 fn seen_in(scene: &SceneBuilder, p: Vec3, aspect: f32) -> Option<Vec2> {
     let camera = cameras::build(&scene.cameras[0], aspect).unwrap();
     let ray = |x: f32, y: f32| {
@@ -247,7 +247,7 @@ fn studio_options_are_applied() {
     assert_eq!(below.objects.len(), 1);
 }
 
-/// What surrounds a model has no place in its coordinates, which a format may turn and scale; a lamp has.
+/// Surroundings of a model have no place in its coordinates, which a format may turn and scale; a lamp has.
 #[test]
 fn surroundings_do_not_keep_a_model_from_standing_upright() {
     let bare = SceneBuilder { up: UpHint::Is(Axis::Z), unit: 0.001, ..teapot() };

@@ -7,7 +7,7 @@ use bilux_scene::{
 };
 use std::sync::Arc;
 
-/// What is no part of scattering, and what lies below the surface.
+/// Parameters that are no part of scattering, and those of what lies below the surface.
 const APART: [&str; 6] =
     ["emission", "opacity", "normal", "coat_normal", "subsurface_weight", "subsurface_color"];
 

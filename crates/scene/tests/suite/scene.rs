@@ -204,7 +204,7 @@ fn mixes_glow_by_either_part() {
     }
 }
 
-/// What is placed, and then moves, is where both put it at each time while the shutter is open.
+/// Objects that are placed, and then move, are where both put them at each time while the shutter is open.
 #[test]
 fn what_is_placed_before_it_moves_is_seen_on_its_way() {
     let key = |time_seconds: f32, z: f32| MotionKey {
@@ -229,7 +229,7 @@ fn what_is_placed_before_it_moves_is_seen_on_its_way() {
     }
 }
 
-/// What is rough spreads what it lets through as what it reflects, in the modes without transport; and each by as much as is stated.
+/// Rough glass spreads what it lets through as what it reflects, in the modes without transport; and each by as much as is stated.
 #[test]
 fn frosted_glass_spreads_both_of_its_rays() {
     let classic = |glass: Spec| {

@@ -63,7 +63,7 @@ fn rust_type(kind: ParameterKind) -> &'static str {
     }
 }
 
-/// How Python's module of makers begins.
+/// Beginning of Python's module of makers.
 const MAKERS: &str = "\"\"\"The functions that make materials, lights and cameras, with their parameters, for editors and checkers of types.
 
 Generated from the tables by `cargo xtask docs`; do not edit by hand.
@@ -82,7 +82,7 @@ if TYPE_CHECKING:
     from ._bilux import Spec
 ";
 
-/// What a camera of OpenCV takes besides: its matrices.
+/// Parameters that a camera of OpenCV takes besides: its matrices.
 const OF_OPENCV: &str = "\
         K: ArrayLike | None = None,
         world_to_camera: ArrayLike | None = None,

@@ -7,7 +7,7 @@ use super::binary::{Binary, BinaryNode};
 use super::costs::{Costs, LARGEST_LEAF, NODE_COST, as_leaf};
 use crate::bvh8::layout::WIDTH;
 
-/// How many of `places` slots to give the left child for the lowest cost, and that cost.
+/// Number of `places` slots for the left child at the lowest cost, and that cost.
 #[inline(always)]
 fn share(places: usize, left: &Costs, right: &Costs) -> (usize, f32) {
     let (mut best, mut least) = (1, left[0] + right[places - 2]);

@@ -13,7 +13,7 @@ use bilux_math::parallel::{map, table};
 /// From this many items on, a subtree is measured and written by many threads.
 const PARALLEL: usize = 1 << 14;
 
-/// How many units a wide subtree takes. For a large one, its children and their plans; for others, the number of
+/// Size of a wide subtree in units. For a large one, also its children and their plans; for others, the number of
 /// children of each node in the order of writing (0 for a leaf), and all children.
 struct Plan {
     units: usize,

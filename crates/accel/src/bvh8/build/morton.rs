@@ -102,8 +102,8 @@ fn subtree(
     (bounds, BinaryNode::new(&bounds, first..first + count as u32, Some(first_pair), costs), 1 + used)
 }
 
-/// Where the highest bit that is not the same in all of them changes; by count if none does, or if the tree is too
-/// deep.
+/// Position where the highest bit changes that is not the same in all places; the middle by count if no bit does, or
+/// if the tree is too deep.
 fn middle_of(places: &[PlaceCode], depth: usize) -> usize {
     let count = places.len();
     let (low, high) = (places[0].0, places[count - 1].0);

@@ -1,4 +1,4 @@
-//! Where to split a set of items: the binned surface-area heuristic [Wald 2007], counted in blocks of triangles.
+//! Choice of a split of items: the binned surface-area heuristic [Wald 2007], counted in blocks of triangles.
 
 use super::item::{Bounds, Item};
 use crate::bvh8::layout::LANES;
@@ -57,7 +57,7 @@ impl Grid {
         [self.whole(place.x), self.whole(place.y), self.whole(place.z)]
     }
 
-    /// The same on one axis.
+    /// Bin on one axis, likewise.
     #[inline(always)]
     fn bin_of(&self, item: &Item, axis: usize) -> u32 {
         let place = (item.centre() - self.least) * self.scale - Vec4::splat(0.5) + Vec4::splat(WHOLE);

@@ -65,7 +65,7 @@ impl Packer<'_> {
         Ref::leaf(at, self.units.len() - at)
     }
 
-    /// How many corners of a leaf the pool lacks; a corner that occurs twice in the leaf counts twice.
+    /// Number of corners of a leaf that the pool lacks; a corner that occurs twice in the leaf counts twice.
     fn new_corners(&self, leaf: &[Unit]) -> usize {
         let corners = leaf.chunks_exact(layout::BLOCK_UNITS).flat_map(layout::triangles);
         corners.flat_map(|(corners, _)| corners).filter(|corner| self.pool.find(corner).is_err()).count()

@@ -1,4 +1,4 @@
-//! What is packed matches the original: boxes contain the originals, and triangles are the same to the bit.
+//! Packed trees match the originals: boxes contain the original boxes, and triangles are the same to the bit.
 
 use super::{Bvh8, CompactBvh8};
 use crate::bvh8::compact_layout::{self as layout, BLOCK_UNITS, NODE_UNITS};

@@ -79,7 +79,7 @@ unsafe fn compressed(mask: u32, enter: __m256i) -> __m256i {
     }
 }
 
-/// The same in descending order, by a sorting network of three stages or six.
+/// Distances and lanes of [`compressed`] in descending order, by a sorting network of three stages or six.
 #[inline(always)]
 unsafe fn sorted(mask: u32, enter: __m256i) -> __m256i {
     // SAFETY: as the caller promises.

@@ -33,7 +33,7 @@ const ROW_BYTES: usize = 3 * LANES * 4;
 #[repr(C, align(16))]
 pub(in crate::bvh8) struct Axes {
     pub(super) order: [u32; 4],
-    /// The same, as a byte shuffle.
+    /// Byte shuffle for the order.
     pub(super) bytes: [u8; 16],
     pub(super) rows: [usize; 3],
 }

@@ -1,4 +1,4 @@
-//! What blocks a ray.
+//! Primitives that block a ray.
 
 #[cfg(target_arch = "x86_64")]
 use crate::ray::Hit;

@@ -82,10 +82,10 @@ pub(super) unsafe fn closest<L: Level, F: NodeFormat, C: Count, const PLAIN: boo
     }
 }
 
-/// Where a search begins.
+/// Start of a search.
 pub(super) struct Start {
     pub(super) current: Ref,
-    /// What comes later: at most [`super::stack::MAX_AT_START`] references.
+    /// References to visit later: at most [`super::stack::MAX_AT_START`].
     pub(super) stack: Stack,
     /// The nearest hit so far.
     pub(super) nearest: Hit,

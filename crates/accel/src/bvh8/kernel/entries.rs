@@ -82,7 +82,7 @@ macro_rules! entries {
     };
 }
 
-/// The same for batches, at levels that support them.
+/// Queries of a level for batches, at levels that support them.
 macro_rules! batch_entries {
     ($level:ty, $features:literal) => {
         /// See [`super::closest_each`].

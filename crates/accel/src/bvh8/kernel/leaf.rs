@@ -11,7 +11,7 @@ use crate::bvh8::layout::{LANES, Unit};
 use crate::ray::{Culling, Hit, Query, Ray};
 use std::hint::black_box;
 
-/// Where a leaf is, and how many blocks it has.
+/// Address of a leaf, and its number of blocks.
 pub(super) type Leaf = (*const u8, usize);
 
 pub(super) const fn block_bytes<F: NodeFormat>() -> usize {

@@ -25,7 +25,7 @@ pub(in crate::bvh8) trait Level: Reorder {
     // SAFETY: as the trait says.
     /// `None` for rays that are not regular, or can hit nothing.
     unsafe fn prepare(ray: &Ray, view: &TreeView<'_>) -> Option<Self::LaneRay>;
-    /// The same distance in all lanes.
+    /// Copies a distance into all lanes.
     unsafe fn splat(bits: u32) -> Self::Eight;
     /// A bit for each lane where the first is less than or equal to the second.
     unsafe fn at_most(enter: Self::Eight, leave: Self::Eight) -> u32;

@@ -1,4 +1,4 @@
-//! How nodes and blocks are read: the difference between the two layouts of a tree.
+//! Access to nodes and blocks: the difference between the two layouts of a tree.
 
 use crate::bvh8::layout::{self, Planes, Ref, Unit};
 
@@ -26,7 +26,7 @@ pub(in crate::bvh8) trait NodeFormat {
     /// Cache lines of a node, or of the start of a leaf.
     #[cfg(target_arch = "x86_64")]
     const LINES: usize;
-    /// What is needed to decode all planes of a node, in vectors of eight and of four.
+    /// Data for decoding all planes of a node, in vectors of eight and of four.
     #[cfg(target_arch = "x86_64")]
     type Frame8: Copy;
     #[cfg(target_arch = "x86_64")]

@@ -34,19 +34,19 @@ impl Stack {
         self.top == self.base
     }
 
-    /// The same stack without entries.
+    /// Empty stack in the same memory.
     #[inline(always)]
     pub(super) fn cleared(&self) -> Stack {
         Stack { base: self.base, top: self.base }
     }
 
-    /// Where the next reference goes, followed by those after it.
+    /// Address of the next reference, followed by those of later ones.
     #[inline(always)]
     pub(super) fn references(&self) -> *mut u32 {
         self.top
     }
 
-    /// Where the distance of the next reference goes.
+    /// Address of the distance of the next reference.
     #[inline(always)]
     pub(super) fn distances(&self) -> *mut u32 {
         self.top.wrapping_add(CAPACITY)

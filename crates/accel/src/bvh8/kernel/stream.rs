@@ -159,7 +159,7 @@ unsafe fn interleaved<L: BatchLevel, const ANY: bool, const PLAIN: bool>(
 
 /// A ray in traversal.
 struct Walk<'r> {
-    /// Its index.
+    /// Index of the ray.
     index: usize,
     ray: &'r Ray,
     lane: Lane<'r>,

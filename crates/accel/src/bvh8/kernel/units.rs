@@ -26,7 +26,7 @@ impl From<Vec<Unit>> for Units {
 }
 
 impl Units {
-    /// Those behind the header of a file, whose length has been checked to be a whole number of them.
+    /// Units behind the header of a file, whose length has been checked to be a whole number of them.
     pub(in crate::bvh8) fn mapped(file: Mmap) -> Units {
         Units(UnitStorage::File(Arc::new(file)))
     }

@@ -69,7 +69,7 @@ pub(super) type Float<W> = <<W as Wide>::Half as Half>::Narrow;
 /// # Safety
 /// As for [`Wide`].
 pub(super) trait Half: Copy {
-    /// The same number of floats.
+    /// As many floats.
     type Narrow: Narrow;
 
     declare! {

@@ -162,7 +162,7 @@ impl Truth {
         self.cases.iter().filter(|(.., hit)| hit.is_some()).count()
     }
 
-    /// The same queries in batches: all rays that share a query at once, a few, and none.
+    /// Rays on which a structure disagrees in batches: all rays that share a query at once, a few, and none.
     fn differences_in_batches(&self, other: &dyn Accelerator) -> Vec<Difference> {
         let mut found = Vec::new();
         for (number, query) in queries().into_iter().enumerate() {

@@ -22,7 +22,7 @@ const STEPS: usize = 24;
 pub struct Beckmann(Stretch);
 
 impl Beckmann {
-    /// The same roughness in all directions.
+    /// Microfacets of equal roughness in all directions.
     pub fn new(alpha: f32) -> Beckmann {
         Beckmann::anisotropic(alpha, alpha, 0.0)
     }

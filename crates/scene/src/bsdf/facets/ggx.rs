@@ -17,7 +17,7 @@ impl Ggx {
     /// A smooth surface.
     pub const SMOOTH: Ggx = Ggx(Stretch::SMOOTH);
 
-    /// The same roughness in all directions.
+    /// Microfacets of equal roughness in all directions.
     pub fn new(alpha: f32) -> Ggx {
         Ggx::anisotropic(alpha, alpha, 0.0)
     }

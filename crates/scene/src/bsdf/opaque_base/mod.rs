@@ -61,7 +61,7 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     },
 };
 
-/// What textures and numbers say at a point.
+/// Inputs of the lobe at a point, from textures and numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OpaqueBaseInputs {
     /// Colour of the diffuse base, and of metal at normal incidence, 0..=1.
@@ -98,8 +98,8 @@ impl OpaqueBaseInputs {
         Albedo::of_alpha(self.roughness * self.roughness, (1.0 + amplitude) / (1.0 - amplitude))
     }
 
-    /// What the table says of the lobe at a point whose normal makes the cosine `cos_o` with `wo`. It is apart from
-    /// everything else because not every machine looks up many at a time.
+    /// Albedos from the table, for a point whose normal makes the cosine `cos_o` with `wo`. This look-up is apart from everything
+    /// else because not every machine looks up many at a time.
     #[inline(always)]
     pub fn look_up(&self, cos_o: f32, table: &AlbedoTable) -> OpaqueBaseAlbedos {
         let albedo = self.albedo();
@@ -278,7 +278,7 @@ impl OpaqueBaseForWo {
         self.strength
     }
 
-    /// What the table says for a direction whose cosine with the normal is `cos_i`.
+    /// Albedos from the table, for a direction whose cosine with the normal is `cos_i`.
     #[inline(always)]
     pub fn look_up(&self, cos_i: f32, table: &AlbedoTable) -> [f32; 2] {
         self.albedo.pair_at(table, cos_i.abs())

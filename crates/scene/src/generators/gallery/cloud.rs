@@ -27,7 +27,7 @@ const BILLOWS: &[([f32; 3], f32)] = &[
     ([25.0, 455.0, 0.0], 48.0),
 ];
 
-/// Where it begins to rain out of the air: the flat base.
+/// Height in metres at which it begins to rain out of the air: the flat base.
 const BASE: f32 = 262.0;
 
 fn build() -> SceneBuilder {

@@ -15,7 +15,7 @@ pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
     generate: |_| Ok(build()),
 };
 
-/// Where the candle stands.
+/// Position of the candle.
 const CANDLE: [f32; 3] = [-0.17, 0.0, 0.03];
 
 fn build() -> SceneBuilder {

@@ -64,7 +64,7 @@ struct Tumbler {
     /// The outer radius.
     radius: f32,
     height: f32,
-    /// How high the milk stands in it.
+    /// Height of the milk's surface.
     level: f32,
     /// Whether a drop has just fallen into it.
     splash: bool,

@@ -71,7 +71,7 @@ fn eye(side: f32) -> Vec3 {
     at(0.0375 * side, 0.232, 0.1555)
 }
 
-/// It stands along z and looks towards positive z.
+/// Body of the piglet, which stands along z and looks towards positive z.
 fn body() -> Mesh {
     let cut = Cut {
         bounds: Aabb { min: at(-0.125, -0.004, -0.245), max: at(0.125, 0.345, 0.225) },

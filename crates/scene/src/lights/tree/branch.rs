@@ -9,8 +9,8 @@ use bilux_math::transcendental::{cos, sin_cos};
 /// The maximum number of children.
 pub(super) const WIDTH: usize = 4;
 
-/// How often a child is chosen without looking at importance, since the most important one may be hidden: over how often one is chosen by
-/// it. That is so in a last branch, and where some lights are far stronger than others.
+/// Probability of choosing a child without looking at importance, over that of choosing one by importance: the most important child
+/// may be hidden. Both are used in a last branch, and where some lights are far stronger than others.
 const CHOSEN_ALIKE: f32 = 0.2;
 
 /// From here on sums of importances may overflow.
@@ -19,7 +19,7 @@ const GREATEST: f32 = f32::MAX / 16.0;
 /// A number for each child.
 type Lanes = Vec4;
 
-/// What a child of a branch is.
+/// Child of a branch.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) enum Child {
     #[default]
@@ -42,7 +42,7 @@ pub(super) struct Branch {
     power: Lanes,
     /// 1 where it shines to both sides, otherwise -1.
     other_side: Lanes,
-    /// What each child that shines has beyond its importance, over the sum of all importances.
+    /// Addition to the importance of each child that shines, over the sum of all importances.
     alike: f32,
     pub(super) children: [Child; WIDTH],
     /// The branch above, and its place there; the root's is the root.
@@ -97,7 +97,7 @@ impl Branch {
         Some((place, all[place] / sum, left.clamp(0.0, 1.0f32.next_down())))
     }
 
-    /// How often a child is chosen for a point; 0 where none shines.
+    /// Probability that a child is chosen for a point; 0 where none shines.
     #[inline]
     pub(super) fn share(&self, p: Vec3, place: usize) -> f32 {
         let (importances, sum) = self.comparable(p);

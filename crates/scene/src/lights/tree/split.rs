@@ -1,4 +1,4 @@
-//! Where a branch of a tree of lights is split.
+//! Splits of the branches of a tree of lights.
 
 use super::super::extent::LightExtent;
 use bilux_math::Aabb;

@@ -54,7 +54,7 @@ fn each_light_is_chosen_as_often_as_it_says() {
     }
 }
 
-/// What a lamp brings to a point, by its own closed form.
+/// Light that a lamp brings to a point, by its own closed form.
 fn brings((extent, power): &(LightExtent, f32), p: Vec3) -> f32 {
     let from = p - extent.bounds.centre();
     let cosine = extent.facing.axis.dot(from.normalize());

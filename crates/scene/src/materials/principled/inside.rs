@@ -1,4 +1,4 @@
-//! What is inside: the medium that light enters below the surface.
+//! The inside: the medium that light enters below the surface.
 
 use super::maps::{Maps, is_there};
 use super::point::{Point, Subsurface, weakened};
@@ -9,7 +9,7 @@ use crate::texture::{ColourMap, NumberMap, Patch};
 use bilux_math::Rgb;
 use bilux_math::transcendental::ln;
 
-/// How light enters the inside, and what it finds there.
+/// Boundary that light enters through, and the medium below it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Inside {
     /// `None` where light does not enter: behind opaque surfaces and thin walls.
@@ -20,7 +20,7 @@ pub(super) struct Inside {
     reference: Rgb,
     /// The index of the boundary.
     pub(super) ior: f32,
-    /// What the clear part absorbs, per metre.
+    /// Absorption coefficient of the clear part, per metre.
     pub(super) absorbed: Rgb,
 }
 
@@ -83,7 +83,7 @@ impl Inside {
     }
 }
 
-/// What `transmission_depth` gives: the inside of glass and of murky liquids.
+/// Inside of glass and of murky liquids, by `transmission_depth`.
 struct Clear {
     /// Absorption and scattering, per metre.
     sigma: [Rgb; 2],

@@ -47,7 +47,7 @@ pub(super) struct Maps {
     pub(super) film_ior: NumberMap,
     /// The textures of an opaque base, in the order of [`Maps::base_of`].
     of_base: LookUps,
-    /// Those of [`Maps::rest_of`].
+    /// The other textures, in the order of [`Maps::at`].
     of_rest: LookUps,
 }
 
@@ -175,7 +175,7 @@ impl Maps {
         !absent.into_iter().any(is_there)
     }
 
-    /// What an opaque base is made of at a point; `vertex` is a factor on its colour.
+    /// Inputs of an opaque base at a point; `vertex` is a factor on its colour.
     pub(super) fn opaque_base_at(&self, uv: impl Into<Patch>, vertex: Rgb) -> OpaqueBaseInputs {
         self.base_of(self.of_base.at(&uv.into()), vertex)
     }

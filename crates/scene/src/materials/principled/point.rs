@@ -40,7 +40,7 @@ pub(super) struct Point {
     pub(super) film: ThinFilm,
 }
 
-/// What the opaque part scatters below its surface, at a point.
+/// Scattering below the surface of the opaque part, at a point.
 #[derive(Clone, Copy)]
 pub(super) enum Subsurface {
     None,
@@ -124,7 +124,7 @@ impl Point {
         if let Subsurface::Body { entering, .. } = self.subsurface { entering } else { Rgb::BLACK }
     }
 
-    /// What the opaque part reflects and transmits diffusely.
+    /// Diffuse reflectance and transmittance of the opaque part.
     fn diffuse(&self, opaque: Rgb) -> [Rgb; 2] {
         let base =
             [self.base_color * opaque * (1.0 - self.passing), self.passing_color * opaque * self.passing];
@@ -171,7 +171,7 @@ impl Point {
         (Some(Lobe::MicrofacetReflection(coat.from_below(self.outside()))), cover)
     }
 
-    /// How much of the coat and fuzz is visible from below: a viewer inside the clear part sees neither.
+    /// Share of the coat and fuzz that is visible from below: a viewer inside the clear part sees neither.
     fn outside(&self) -> f32 {
         if self.thin { 1.0 } else { 1.0 - self.clear() - self.body() }
     }

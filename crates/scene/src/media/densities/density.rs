@@ -169,7 +169,7 @@ pub(super) const TO: Parameter = Parameter {
     default: "1 1 1",
 };
 
-/// How fine the voxels are.
+/// Resolution of the voxels.
 pub(super) const RESOLUTION: Parameter = Parameter {
     name: "resolution",
     summary: "voxels along the longest side of the box; 0 for as many as its detail needs, but at most 2^23 in all",

@@ -59,7 +59,7 @@ pub(super) fn noise(p: Vec3) -> f32 {
     lerp(lerp(along_x(0, 0), along_x(1, 0), v), lerp(along_x(0, 1), along_x(1, 1), v), w)
 }
 
-/// How fast the noise rises along each axis, by differences over a hundredth of a cell.
+/// Slope of the noise along each axis, by differences over a hundredth of a cell.
 pub(super) fn rise(p: Vec3) -> Vec3 {
     const STEP: f32 = 0.01;
     let here = noise(p);

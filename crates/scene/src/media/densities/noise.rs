@@ -64,7 +64,7 @@ pub(super) const ENTRY: DensityEntry = DensityEntry {
     },
 };
 
-/// Where the noise of an octave begins, in its cells, which repeat every 256.
+/// Offset of the noise of an octave, in its cells, which repeat every 256.
 fn shift(seed: u64, octave: u64) -> Vec3 {
     Vec3::from([0, 1, 2].map(|axis| (hash_words([seed, octave, axis]) >> 48) as f32 / 256.0))
 }

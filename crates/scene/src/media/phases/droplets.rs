@@ -30,7 +30,7 @@ pub struct Droplets {
 }
 
 impl Droplets {
-    /// That of droplets with a diameter of 5 to 50 µm. [Jendersie 2023]
+    /// Phase function of droplets with a diameter of 5 to 50 µm. [Jendersie 2023]
     pub fn new(diameter: f32) -> Droplets {
         let d = diameter.clamp(5.0, 50.0);
         Droplets {

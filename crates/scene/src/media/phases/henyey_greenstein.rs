@@ -33,7 +33,7 @@ pub struct HenyeyGreenstein {
 }
 
 impl HenyeyGreenstein {
-    /// The same in all directions.
+    /// Equal scattering in all directions.
     pub const ISOTROPIC: HenyeyGreenstein = HenyeyGreenstein { g: 0.0 };
 
     #[inline]

@@ -50,7 +50,7 @@ impl Phase {
         self.at((0.5 * (wo + wi).length_squared()).min(2.0))
     }
 
-    /// The same by one minus the cosine of the angle by which light is turned.
+    /// [`Phase::eval`] by one minus the cosine of the angle by which light is turned.
     #[inline]
     pub fn at(&self, turn: f32) -> f32 {
         each_phase!(self, phase => phase.at(turn))

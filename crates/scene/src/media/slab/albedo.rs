@@ -5,7 +5,7 @@ use super::Slab;
 /// Nodes on each side of the critical angle: the colour is right to about 5·10⁻⁴.
 const NODES: usize = 8;
 
-/// How near to the colour the search comes, and how many tries it has.
+/// Error of the colour below which the search ends, and its maximum number of tries.
 const TOLERANCE: f64 = 1e-5;
 const MAX_TRIES: u32 = 12;
 

@@ -26,7 +26,7 @@ pub struct Slab {
     pub eta: f64,
 }
 
-/// What becomes of light that arrives at normal incidence; what is left is absorbed.
+/// Fractions of light that arrives at normal incidence; what is left is absorbed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlabLight {
     /// The fraction that the boundary reflects at once.
@@ -76,8 +76,8 @@ impl Slab {
         all
     }
 
-    /// What a layer of this thickness, without boundaries, reflects and passes: the intensity at each node (row) per intensity
-    /// at each node.
+    /// Reflection and transmission of a layer of this thickness, without boundaries: the intensity at each node (row) per
+    /// intensity at each node.
     ///
     /// The peak of the phase function that the nodes cannot resolve counts as light that goes straight on. [Wiscombe 1977]
     fn layer(&self, mu: &[f64], weights: &[f64], orders: usize) -> [Matrix; 2] {
@@ -141,7 +141,7 @@ impl Slab {
 const THIN: f64 = 1.0 / 256.0;
 /// Doublings of a half space that loses nothing, through which some light would always come.
 const MAX_DOUBLINGS: u32 = 44;
-/// What comes through the largest layer of a half space.
+/// Transmission below which a layer counts as a half space.
 const OPAQUE: f64 = 1e-9;
 
 /// A layer so thin that intensities in it are the means of those on its sides. [Wiscombe 1976]
@@ -233,7 +233,7 @@ mod tests {
         }
     }
 
-    /// The same for half spaces; the first is that of [Giovanelli 1955], who prints 0.2600.
+    /// Half spaces against discrete ordinates; the first is that of [Giovanelli 1955], who prints 0.2600.
     #[test]
     fn half_spaces_are_those_of_discrete_ordinates() {
         for (albedo, anisotropy, eta, reflected) in [

@@ -46,7 +46,7 @@ impl Quadrature {
         self
     }
 
-    /// The same on another interval, behind these nodes.
+    /// Appends another quadrature, moved to an interval, behind these nodes.
     pub(super) fn followed_by(&mut self, other: &Quadrature, [from, to]: [f64; 2]) {
         self.nodes.extend(other.nodes.iter().map(|x| from + (to - from) * x));
         self.weights.extend(other.weights.iter().map(|w| (to - from) * w));

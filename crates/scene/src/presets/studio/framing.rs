@@ -153,12 +153,12 @@ impl Framing {
     }
 }
 
-/// What a framing has to show.
+/// Scene that a framing has to show.
 struct View<'a> {
     scene: &'a SceneBuilder,
     /// Whether it turns, and has to be seen whole from all around.
     turns: bool,
-    /// How flat it is, from 0 to 1.
+    /// Flatness of the model, from 0 to 1.
     flat: f64,
 }
 
@@ -177,7 +177,7 @@ impl View<'_> {
     }
 }
 
-/// How flat a box lies, from 0 to 1.
+/// Flatness of a box, from 0 to 1.
 fn flatness(extent: DVec3) -> f64 {
     let [from, to] = FLAT;
     let height = extent.y / extent.x.min(extent.z);

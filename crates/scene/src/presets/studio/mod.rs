@@ -156,7 +156,7 @@ pub fn is_unlit(scene: &SceneBuilder) -> bool {
     !scene.objects.is_empty() && scene.objects.iter().all(of)
 }
 
-/// What the studio has added to light a scene, as a list in words; `None` if it has added no light. `count` is the number of
+/// Lights that the studio has added to a scene, as a list in words; `None` if it has added no light. `count` is the number of
 /// lights that the scene had before.
 pub fn added_lights(completed: &SceneBuilder, count: usize) -> Option<String> {
     let words = |light: &Spec| match light.name.as_str() {
@@ -231,7 +231,7 @@ fn has_surroundings(scene: &SceneBuilder) -> bool {
     scene.lights.iter().any(|light| is_around(light) && !light.is_backdrop())
 }
 
-/// What an object's material emits, from its surface and from its inside, as far as the scene states it.
+/// Emissions of an object's material, from its surface and from its inside, as far as the scene states them.
 fn emissions_of<'a>(scene: &'a SceneBuilder, object: &Object) -> impl Iterator<Item = &'a Value> {
     let inside = || scene.materials.get(object.material)?.parameters.find("medium_emission");
     emission_of(scene, object).into_iter().chain(inside().map(|(value, _)| value))

@@ -1,4 +1,4 @@
-//! What can be chosen of the studio.
+//! Options of the studio.
 
 use crate::axis::Axis;
 
@@ -24,12 +24,12 @@ impl Ground {
     }
 }
 
-/// How a model is photographed. A field that is `None` gets a default only where the scene does not specify it.
+/// Settings with which a model is photographed. A field that is `None` gets a default only where the scene does not specify it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Studio {
     /// The ground below the model.
     pub ground: Option<Ground>,
-    /// How far people see in the fog around everything, in metres, if there is any.
+    /// Visibility in the fog around everything, in metres, if there is any.
     pub fog: Option<f32>,
     /// The view direction: degrees to the right of its front (+z), and above it.
     pub orbit: Option<[f32; 2]>,
@@ -49,7 +49,7 @@ pub struct Studio {
     /// Whether the scene's own light illuminates the visible objects, as measured; `None` means that having any is
     /// enough.
     pub lit: Option<bool>,
-    /// How many times brighter than usual the studio's lights are, where a scene's own light is that much brighter than what
+    /// Factor on the usual brightness of the studio's lights, where a scene's own light is that much brighter than what
     /// a picture shows; `None` for 1.
     pub brightness: Option<f32>,
 }

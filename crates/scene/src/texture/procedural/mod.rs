@@ -91,7 +91,7 @@ impl Formula {
         Ok(Formula { spec, parts, pattern, cost })
     }
 
-    /// Its description; textures are indices into its parts.
+    /// Description of the texture; other textures are indices into its parts.
     pub fn spec(&self) -> &Spec {
         &self.spec
     }
@@ -135,7 +135,7 @@ impl Texture {
         Ok(Texture::of(&name, Arc::new(image), is_data))
     }
 
-    /// Its procedural texture, if it is one.
+    /// Formula of a procedural texture; `None` for an image.
     pub fn formula(&self) -> Option<&Formula> {
         match &self.image.texels {
             Texels::Formula(formula) => (&**formula as &dyn Any).downcast_ref(),

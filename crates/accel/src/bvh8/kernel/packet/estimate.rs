@@ -3,7 +3,7 @@
 
 use super::super::wide::Wide;
 
-/// What single precision knows of a triangle that may be hit.
+/// Result of the first stage for a triangle that may be hit.
 pub(super) struct Estimate<W> {
     /// No distance is less, and none is greater.
     pub(super) t: [W; 2],

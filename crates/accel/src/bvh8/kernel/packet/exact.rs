@@ -3,13 +3,13 @@
 use super::super::wide::Half;
 use super::orientation::Corners;
 
-/// What it finds.
+/// Result of the exact stage.
 pub(super) struct Exact<H: Half> {
     /// Rays that pass the edges on different sides.
     pub(super) mixed: u32,
-    /// Those whose determinant is neither zero nor infinite nor NaN.
+    /// Rays whose determinant is neither zero nor infinite nor NaN.
     pub(super) sound: u32,
-    /// Those for which it is negative.
+    /// Rays whose determinant is negative.
     pub(super) below: u32,
     pub(super) det: H,
     pub(super) v: H,

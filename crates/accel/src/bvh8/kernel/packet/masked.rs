@@ -34,7 +34,7 @@ const LEAST_AT_LEAF: u32 = 6;
 /// however few rays are with it.
 const TAILS: usize = MAX_AT_START;
 
-/// What is left to do for each ray.
+/// Tails of all rays, still to be visited.
 pub(in crate::bvh8::kernel) struct Tails {
     counts: [u8; RAYS],
     /// The first tail of each ray, then the second of each, and so on.
@@ -54,7 +54,7 @@ struct Entry {
     mask: u64,
 }
 
-/// Those still to be visited.
+/// Stack of the entries still to be visited.
 struct Entries {
     entries: [MaybeUninit<Entry>; CAPACITY],
     size: usize,
@@ -97,7 +97,7 @@ impl Packet {
         }
     }
 
-    /// What a ray has found so far, and the bits of the distance up to which it still searches.
+    /// Hit that a ray has found so far, and the bits of the distance up to which the ray still searches.
     ///
     /// # Safety
     /// The packet must be prepared.

@@ -47,7 +47,7 @@ unsafe fn splat<W: Wide>(block: *const u8, axis: usize, corner: usize, lane: usi
     unsafe { W::splat(*block.cast::<f32>().add((axis * 3 + corner) * LANES + lane)) }
 }
 
-/// The same for all rays.
+/// Axes that all rays share.
 impl<W: Wide> Orientation<W> for &Frustum {
     const ESTIMATES: bool = false;
 
@@ -112,9 +112,9 @@ impl<W: Wide> Orientation<W> for &Frustum {
 
 /// One for each ray; masks have a bit for each.
 pub(super) struct Mixed {
-    /// Those that are steepest along x, and along y.
+    /// Rays that are steepest along x, and along y.
     steep: [u64; 2],
-    /// Those that run downwards along their steepest axis.
+    /// Rays that run downwards along their steepest axis.
     down: u64,
 }
 

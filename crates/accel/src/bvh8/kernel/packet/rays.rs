@@ -49,13 +49,13 @@ pub(in crate::bvh8::kernel) struct Packet {
     pub(super) exclude: Row<u32>,
     /// As in [`super::super::lane_ray::LaneRay`].
     pub(super) pace: Row<f32>,
-    /// Its inverse.
+    /// Reciprocal of `pace`.
     pub(super) slowness: Row<f32>,
     pub(super) inverse: [Row<f32>; 3],
     /// Padded origins for the planes where the ray enters, and for those where it leaves.
     pub(super) enter: [Row<f32>; 3],
     pub(super) leave: [Row<f32>; 3],
-    /// The same, negated, in units of distance.
+    /// Padded origins, negated, in units of distance.
     pub(super) enter_bias: [Row<f32>; 3],
     pub(super) leave_bias: [Row<f32>; 3],
     pub(super) nearest: Row<f32>,

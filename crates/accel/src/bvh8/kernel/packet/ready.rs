@@ -18,14 +18,14 @@ use std::arch::x86_64::*;
 pub(in crate::bvh8::kernel) struct Ready {
     /// Lanes in use, a whole number of groups.
     pub(super) lanes: usize,
-    /// The same as a mask.
+    /// Mask of the lanes in use.
     pub(super) used: u64,
-    /// Those that get an answer.
+    /// Rays that get an answer.
     pub(in crate::bvh8::kernel) asked: u64,
     pub(in crate::bvh8::kernel) regular: u64,
-    /// Those that are not regular.
+    /// Rays that get an answer and are not regular.
     pub(in crate::bvh8::kernel) irregular: u64,
-    /// Those whose direction is negative along each axis.
+    /// Rays whose direction is negative along each axis.
     pub(super) down: [u64; 3],
 }
 

@@ -15,7 +15,7 @@ pub(super) struct Group<'p, O> {
     packet: &'p mut Packet,
     orientation: O,
     query: &'p Query<'p>,
-    /// Its first ray.
+    /// First ray of the group.
     from: usize,
 }
 
@@ -348,7 +348,7 @@ impl<'p, O> Group<'p, O> {
         }
     }
 
-    /// Those rays of a mask whose hits the filter accepts.
+    /// Rays of a mask whose hits the filter accepts.
     ///
     /// # Safety
     /// As for [`Group::test`].
