@@ -2,7 +2,7 @@
 
 use crate::{read_text, refusal, warnings};
 use bilux_formats::{FormatError, ReadOptions, read};
-use bilux_math::transcendental::{acos, exp, sin, tan};
+use bilux_math::transcendental::{acos, atan, exp, sin, tan};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Mesh, Object, SceneBuilder, Spec, Value, Visibility};
 
@@ -492,6 +492,35 @@ fn sources_are_suns_domes_and_parts_of_skies() {
     assert!((texel(0.75, 0.5) - 0.5 * LUMENS).abs() < 1e-6);
     assert!((texel(0.6, 0.5) - 0.5 * LUMENS).abs() < 1e-6, "within 60 degrees");
     assert_eq!((texel(0.57, 0.5), texel(0.25, 0.5), texel(0.75, 0.1)), (0.0, 0.0, 0.0));
+}
+
+/// A sky that reaches five degrees below the horizon lights what it sees from below, by the numbers that `rtrace` prints.
+#[test]
+fn a_sky_of_more_than_its_half_reaches_below_the_horizon() {
+    let wide = |degrees: f32| {
+        scene(&format!(
+            "!gensky 8 18 9.5 -s\nskyfunc glow g 0 0 4 .5 1 2 0\ng source sky 0 0 4 0 0 1 {degrees}"
+        ))
+    };
+    let made = wide(190.0);
+    assert_eq!(warnings(&made), "");
+    let kinds: Vec<_> = made.lights.iter().map(|light| &*light.kind).collect();
+    assert_eq!(kinds, ["cie-sky", "environment"]);
+    let map = &made.textures[0];
+    let texel = |x: f32, tangent: f32| {
+        let row = 0.5 - atan(tangent) / std::f32::consts::PI;
+        map.texel((x * map.width() as f32) as usize, (row * map.height() as f32) as usize)
+    };
+    // The east is a quarter to the right of the middle, the south at the edge.
+    for (x, tangent, wanted) in
+        [(0.75, -0.05, 23.69), (0.75, -0.08, 22.74), (0.0, -0.05, 20.81), (0.0, -0.08, 21.09)]
+    {
+        let found = texel(x, tangent);
+        assert!((found.g / (wanted * LUMENS) - 1.0).abs() < 5e-3, "{found:?}, not {wanted}");
+        assert!((found.r / found.g - 0.5).abs() < 1e-3 && (found.b / found.g - 2.0).abs() < 1e-3);
+    }
+    assert_eq!((texel(0.5, 0.05), texel(0.5, -0.1)), (Rgb::grey(0.0), Rgb::grey(0.0)));
+    assert_eq!(wide(180.0).lights.len(), 1);
 }
 
 #[test]

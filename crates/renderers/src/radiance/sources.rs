@@ -17,6 +17,9 @@ use std::sync::Arc;
 /// Sources of this diameter and more are parts of a sky.
 const LEAST_SKY: f64 = 90.0;
 
+/// A sky that reaches this far below the horizon, as a sine, shows more than its half.
+const SHARP: f64 = 1e-3;
+
 /// The height in texels of the map of what is neither a sun nor half of a sky.
 const ROWS: usize = 512;
 
@@ -134,6 +137,12 @@ fn sky(
     let Some(PlacedSky { sky, sun: towards }) = &upper.sky else { return Ok(()) };
     let ground = lower.map_or([0.0; 3], DistantSource::ground);
     let times = |factor: f64| upper.colour.map(|c| c * factor);
+    let reach = cos_f64((0.5 * upper.degrees.clamp(180.0, 360.0)).to_radians());
+    let is_wider = lower.is_none() && reach < -SHARP;
+    let below = |direction: DVec3| match is_wider && direction.y > reach {
+        true => times(sky.below_horizon(in_file(direction), *towards)),
+        false => ground,
+    };
     let kind = if matches!(sky.form, Form::Perez { .. }) { "perez-sky" } else { "cie-sky" };
     let spec = Spec::new(&upper.name, kind)
         .with("elevation", asin_f64(towards.z.clamp(-1.0, 1.0)).to_degrees() as f32)
@@ -144,7 +153,7 @@ fn sky(
             let towards = turned(*towards);
             return map(world, &upper.name, &upper.at, |direction| match direction.y > 0.0 {
                 true => times(formula.at(direction, towards)),
-                false => ground,
+                false => below(direction),
             });
         }
         Form::Cie { standard, zenith } => spec
@@ -164,7 +173,19 @@ fn sky(
     // What the ground reflects, of the sky and of the sun that shines here.
     let received = [0, 1, 2].map(|i| upper.colour[i] * sky.level + sunlight[i] * towards.z.max(0.0));
     spec = spec.with("ground", ratio(ground.map(|c| c * PI), received));
-    world.light(spec, &upper.at)
+    world.light(spec, &upper.at)?;
+    if !is_wider {
+        return Ok(());
+    }
+    map(world, &format!("{} below the horizon", upper.name), &upper.at, |direction| match direction.y > 0.0 {
+        true => [0.0; 3],
+        false => below(direction),
+    })
+}
+
+/// A direction of the scene, with y up, as the file has it, with z up.
+fn in_file(direction: DVec3) -> DVec3 {
+    DVec3::new(direction.x, -direction.z, direction.y)
 }
 
 /// Adds halves of a sky that are the same all over; false if they are not described so.

@@ -1,7 +1,8 @@
 //! Brightness of a sky.
 
-use super::formula::{Formula, Weather};
+use super::formula::{Formula, Weather, clear};
 use bilux_math::DVec3;
+use std::f64::consts::PI;
 
 /// Brightness of a sky, in Radiance's units.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,6 +15,29 @@ pub(in super::super) struct Sky {
     /// The radiance of the ground below it.
     pub(in super::super) ground: f64,
 }
+
+impl Sky {
+    /// Radiance just below the horizon, where Radiance blends the sky into the ground, in a direction with z up: what a
+    /// source of more than 180 degrees shows there.
+    pub(in super::super) fn below_horizon(&self, direction: DVec3, sun: DVec3) -> f64 {
+        let horizon = match self.form {
+            Form::Cie { standard: CLEAR, zenith } => zenith * clear(direction, sun) / clear(DVec3::Z, sun),
+            Form::Cie { standard: OVERCAST, zenith } => zenith / 3.0,
+            Form::Cie { zenith, .. } => zenith,
+            Form::Perez { .. } => self.level / PI,
+            Form::Formula(formula) => formula.in_file(direction, sun),
+        };
+        let base = direction.z + 1.01;
+        let fifth = base * base * base * base * base;
+        let weight = fifth * fifth;
+        (weight * horizon + self.ground / weight) / (weight + weight.recip())
+    }
+}
+
+/// Numbers of standard skies of the CIE.
+const CLEAR: i32 = 12;
+const OVERCAST: i32 = 16;
+const UNIFORM: i32 = 5;
 
 /// Distribution of the brightness.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,9 +53,9 @@ pub(in super::super) enum Form {
 /// Distribution of the brightness, with this radiance of the zenith.
 pub(in super::super) fn form(weather: Weather, zenith: f64) -> Form {
     match weather {
-        Weather::Clear => Form::Cie { standard: 12, zenith },
-        Weather::Overcast => Form::Cie { standard: 16, zenith },
-        Weather::Uniform => Form::Cie { standard: 5, zenith },
+        Weather::Clear => Form::Cie { standard: CLEAR, zenith },
+        Weather::Overcast => Form::Cie { standard: OVERCAST, zenith },
+        Weather::Uniform => Form::Cie { standard: UNIFORM, zenith },
         Weather::Intermediate => Form::Formula(Formula::Intermediate { zenith }),
     }
 }
