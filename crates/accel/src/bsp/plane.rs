@@ -10,7 +10,7 @@ use bilux_math::{Aabb, DVec3, Vec3};
 pub(super) struct Space {
     /// Centre of the mesh.
     pub(super) centre: Vec3,
-    /// Largest distance that counts as touching a plane: 8 · 2⁻²⁴ of the largest extent of the mesh. A plane through points of
+    /// Largest distance that counts as touching a plane: 8 · 2⁻²⁴ of half the largest extent of the mesh. A plane through points of
     /// the mesh, once its coefficients are rounded to f32, is never further from them.
     pub(super) tolerance: f64,
 }
@@ -21,7 +21,7 @@ impl Space {
             return Space { centre: Vec3::ZERO, tolerance: 0.0 };
         }
         let centre = bounds.centre();
-        let half = (bounds.max.as_dvec3() - bounds.min.as_dvec3()).max_element();
+        let half = 0.5 * (bounds.max.as_dvec3() - bounds.min.as_dvec3()).max_element();
         Space { centre, tolerance: half * (8.0 / 16_777_216.0) }
     }
 

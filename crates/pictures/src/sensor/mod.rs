@@ -71,7 +71,7 @@ pub struct Reading {
     /// Digital numbers: a plane `Y` if each pixel has one filter or none, otherwise `R`, `G` and `B`. Where the picture is a part of a larger
     /// one, so is this.
     pub raw: Picture,
-    /// Number of samples with the largest number.
+    /// Number of pixels that have the largest number in any plane.
     pub saturated: u64,
 }
 
@@ -90,7 +90,7 @@ impl Sensor {
         let planes = self.pattern.planes();
         let mut raw = Picture::new(width, picture.height())?;
         (raw.crop, raw.metadata) = (picture.crop, picture.metadata.clone());
-        let mut saturated = 0;
+        let mut saturated = vec![false; picture.pixel_count()];
         for (plane, name) in planes.iter().enumerate() {
             let mut samples = vec![0.0; picture.pixel_count()];
             for_each(samples.chunks_mut(width).enumerate(), |(row, samples)| {
@@ -101,10 +101,10 @@ impl Sensor {
                 }
             });
             let most = self.largest_number() as f32;
-            saturated += samples.iter().filter(|&&sample| sample >= most).count() as u64;
+            saturated.iter_mut().zip(&samples).for_each(|(is_full, &sample)| *is_full |= sample >= most);
             raw.push_channel(*name, samples)?;
         }
-        Ok(Reading { raw, saturated })
+        Ok(Reading { raw, saturated: saturated.iter().filter(|is_full| **is_full).count() as u64 })
     }
 
     /// The light that a reading stands for, in the unit of the picture that was read: the inverse of the sensor's mean response, pixel by pixel

@@ -204,10 +204,9 @@ impl Sparse {
             read(at, &mut values)?;
             blocks.insert(origin.map(|x| x.div_euclid(SIDE)), values);
         }
-        let count = blocks.len();
-        let mesh = Distances { blocks }.surface(&placed.map);
         // The surface passes through a block about as a plane does.
-        budget.take_bytes((count * BLOCK * BLOCK * SURFACE_BYTES) as u64, file.name)?;
+        budget.take_bytes((blocks.len() * BLOCK * BLOCK * SURFACE_BYTES) as u64, file.name)?;
+        let mesh = Distances { blocks }.surface(&placed.map);
         budget.take_bytes(mesh.size(), file.name)?;
         Ok((!mesh.triangles.is_empty()).then(|| Mesh { name: placed.name.to_owned(), ..mesh }))
     }
