@@ -7,6 +7,7 @@ mod citations;
 mod decisions;
 mod dependencies;
 mod directions;
+mod doc_comments;
 mod figures;
 mod file_length;
 mod forbidden;
@@ -59,6 +60,7 @@ const RULES: &[Rule] = &[
     Rule { name: "rooms", check: rooms::check },
     Rule { name: "dependencies", check: dependencies::check },
     Rule { name: "changelog", check: changelog::check },
+    Rule { name: "doc-comments", check: doc_comments::check },
     Rule { name: "front-page", check: front_page::check },
     Rule { name: "front-page-names", check: front_page_names::check },
     Rule { name: "figures", check: figures::check },

@@ -4,6 +4,7 @@
 
 use super::{IntegratorEntry, LightSubpaths, PixelIntegrator};
 use crate::bidirectional::{LightTracing, LightTracingSamples};
+use crate::photons::Photons;
 use crate::sampling::sample_queue::SampleQueue;
 use crate::sampling::splats::Splats;
 use crate::sampling::task::{Context, Task};
@@ -40,13 +41,24 @@ impl PixelIntegrator for LightTracing {
         Some(self)
     }
 
-    fn queue<'a>(&self, _context: &Context<'a>) -> Option<Box<dyn SampleQueue + 'a>> {
+    fn queue<'a>(
+        &self,
+        _context: &Context<'a>,
+        _photons: Option<&'a Photons>,
+    ) -> Option<Box<dyn SampleQueue + 'a>> {
         Some(Box::new(LightTracingSamples::new(*self)))
     }
 }
 
 impl LightSubpaths for LightTracing {
-    fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
+    fn sample(
+        &self,
+        ray: &Ray,
+        is_wanted: bool,
+        _photons: Option<&Photons>,
+        task: &mut Task,
+        splats: &mut Splats,
+    ) -> Rgb {
         let emitted = if is_wanted { self.radiance(ray, task) } else { Rgb::BLACK };
         self.trace(ray.time, task, |film, light| splats.add(film, light));
         emitted

@@ -2,6 +2,7 @@
 
 use super::{IntegratorEntry, PixelIntegrator};
 use crate::path_tracing::{PathTracing, Sampling};
+use crate::photons::Photons;
 use crate::queue::PathQueue;
 use crate::sampling::sample_queue::SampleQueue;
 use crate::sampling::task::{Context, Task};
@@ -55,7 +56,11 @@ impl PixelIntegrator for PathTracing {
         true
     }
 
-    fn queue<'a>(&self, context: &Context<'a>) -> Option<Box<dyn SampleQueue + 'a>> {
+    fn queue<'a>(
+        &self,
+        context: &Context<'a>,
+        _photons: Option<&'a Photons>,
+    ) -> Option<Box<dyn SampleQueue + 'a>> {
         let has_queue = self.is_mis() && PathQueue::takes(context.scene) && !context.camera.receives();
         has_queue.then(|| Box::new(PathQueue::new(*self)) as _)
     }

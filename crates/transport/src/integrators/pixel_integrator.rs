@@ -60,8 +60,12 @@ pub trait PixelIntegrator: Send + Sync + 'static {
 
     /// Takes many of its samples at a time, each as if on its own; `None` where they are taken one by one.
     #[doc(hidden)]
-    fn queue<'a>(&self, context: &Context<'a>) -> Option<Box<dyn SampleQueue + 'a>> {
-        Some(Box::new(BothEndsSamples::new(self.light_subpaths()?.both_ends(context.photons)?)))
+    fn queue<'a>(
+        &self,
+        _context: &Context<'a>,
+        photons: Option<&'a Photons>,
+    ) -> Option<Box<dyn SampleQueue + 'a>> {
+        Some(Box::new(BothEndsSamples::new(self.light_subpaths()?.both_ends(photons)?)))
     }
 }
 
@@ -74,8 +78,15 @@ pub trait LightSubpaths: PixelIntegrator {
 
     /// Takes a sample of a pixel: [`PixelIntegrator::radiance`] where it `is_wanted` (pixels outside the crop trace
     /// only their light subpaths), and all splats.
-    fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
-        match self.both_ends(task.context.photons) {
+    fn sample(
+        &self,
+        ray: &Ray,
+        is_wanted: bool,
+        photons: Option<&Photons>,
+        task: &mut Task,
+        splats: &mut Splats,
+    ) -> Rgb {
+        match self.both_ends(photons) {
             Some(both_ends) => {
                 let mut sum = Sum { here: Rgb::BLACK, splats };
                 both_ends.sample(ray, is_wanted, task, &mut sum);
@@ -94,7 +105,7 @@ pub trait LightSubpaths: PixelIntegrator {
     }
 
     /// Merging of camera subpaths with photons, if there is any. Each sample of all pixels is then an iteration, which begins
-    /// with the photons' light subpaths ([`crate::sampling::task::Context::photons`]).
+    /// with the photons' light subpaths.
     fn merging(&self) -> Option<&Merging> {
         None
     }
@@ -119,11 +130,18 @@ impl dyn PixelIntegrator {
     }
 
     /// Takes a sample of a pixel: from the camera where it `is_wanted`, and all splats.
-    pub fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
+    pub fn sample(
+        &self,
+        ray: &Ray,
+        is_wanted: bool,
+        photons: Option<&Photons>,
+        task: &mut Task,
+        splats: &mut Splats,
+    ) -> Rgb {
         // Where the film sees nothing, only light subpaths are left.
         let is_wanted = is_wanted && !ray.is_nowhere();
         match self.light_subpaths() {
-            Some(subpaths) => subpaths.sample(ray, is_wanted, task, splats),
+            Some(subpaths) => subpaths.sample(ray, is_wanted, photons, task, splats),
             None if is_wanted => self.radiance(ray, task),
             None => Rgb::BLACK,
         }

@@ -9,6 +9,7 @@ use crate::bidirectional::{
 };
 use crate::photons::{Merging, Photons};
 use crate::sampling::sample_queue::SampleQueue;
+use crate::sampling::splats::Splats;
 use crate::sampling::task::{Context, Task};
 use crate::techniques::{Contribution, PerSet, PixelSum, Tally, Technique, TechniqueCounts};
 use bilux_math::registry::Entry;
@@ -40,6 +41,12 @@ impl Sppm {
     fn gathering<'a>(&self, photons: Option<&'a Photons>) -> PhotonGathering<'a> {
         PhotonGathering { photons, roulette_depth: self.merging.roulette_depth }
     }
+
+    fn gathered(&self, ray: &Ray, photons: Option<&Photons>, task: &mut Task) -> Rgb {
+        let mut sum = PixelSum::default();
+        self.gathering(photons).follow(ray, &[], task, &mut sum);
+        sum.0
+    }
 }
 
 impl PixelIntegrator for Sppm {
@@ -53,23 +60,22 @@ impl PixelIntegrator for Sppm {
         false
     }
 
+    /// Light that is seen directly: all other light comes with photons.
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
-        let mut sum = PixelSum::default();
-        self.gathering(task.context.photons).follow(ray, &[], task, &mut sum);
-        sum.0
+        self.gathered(ray, None, task)
     }
 
     fn light_subpaths(&self) -> Option<&dyn LightSubpaths> {
         Some(self)
     }
 
-    fn queue<'a>(&self, context: &Context<'a>) -> Option<Box<dyn SampleQueue + 'a>> {
+    fn queue<'a>(
+        &self,
+        _context: &Context<'a>,
+        photons: Option<&'a Photons>,
+    ) -> Option<Box<dyn SampleQueue + 'a>> {
         let (queue, light_paths) = (CameraQueue::default(), LightPaths::default());
-        Some(Box::new(PhotonGatheringSamples {
-            gathering: self.gathering(context.photons),
-            queue,
-            light_paths,
-        }))
+        Some(Box::new(PhotonGatheringSamples { gathering: self.gathering(photons), queue, light_paths }))
     }
 }
 
@@ -77,6 +83,17 @@ impl LightSubpaths for Sppm {
     /// All are photons'.
     fn splats(&self) -> bool {
         false
+    }
+
+    fn sample(
+        &self,
+        ray: &Ray,
+        is_wanted: bool,
+        photons: Option<&Photons>,
+        task: &mut Task,
+        _splats: &mut Splats,
+    ) -> Rgb {
+        if is_wanted { self.gathered(ray, photons, task) } else { Rgb::BLACK }
     }
 
     fn merging(&self) -> Option<&Merging> {

@@ -43,9 +43,10 @@ pub(crate) struct Start {
     pub(crate) cell: u16,
 }
 
-/// Number that stands for a light where light is sorted by lights; all lights from index 65535 on are one.
+/// Number that stands for a light where light is sorted by lights; all lights from index 65534 on are one, and none is
+/// [`NO_LIGHT`].
 pub(crate) fn light_number(light: usize) -> u16 {
-    u16::try_from(light).unwrap_or(NO_LIGHT)
+    light.min(usize::from(NO_LIGHT) - 1) as u16
 }
 
 impl Start {

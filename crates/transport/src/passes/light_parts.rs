@@ -88,7 +88,7 @@ pub fn light_parts(
             let rays = || integrator.camera_rays(scene, camera, settings).by_light();
             let photons = sums.photons(integrator, &rays(), &whole.tiles(TILE), samples.start)?;
             let mut eye = rays();
-            eye.context.photons = photons.as_ref();
+            eye.photons = photons.as_ref();
             try_for_each(&tiles, |tile| sums.add_tile(integrator, &eye, *tile, &samples, progress))
         })?;
     }
@@ -181,7 +181,7 @@ impl<'a> Sums<'a> {
         let wanted = tile.intersection(&self.settings.window());
         let mut films = vec![Film::part(self.scale); self.division.count()];
         films.iter_mut().for_each(|film| film.restart(wanted));
-        let photons = eye.context.photons;
+        let photons = eye.photons;
         let both_ends = integrator.light_subpaths().and_then(|subpaths| subpaths.both_ends(photons));
         let mut tally = self.tally();
         for (x, y) in (0..tile.pixels()).map(|i| tile.position(i)) {
@@ -380,14 +380,14 @@ impl Tally<1> for PartTally<'_> {
         let (edges, light) = (Strategy::of(technique).edges, found.weighted());
         let length = self.length(technique);
         self.sum += light;
-        let parts = self.division.parts(edges, Some(found.origin.into()), length);
+        let parts = self.division.parts(edges, found.light_index(), length);
         parts.for_each(|part| self.here[part] += light);
     }
 
     fn add_splat(&mut self, film: Vec2, technique: Technique, found: &Contribution) {
         let (edges, light) = (Strategy::of(technique).edges, found.weighted());
         let length = self.length(technique);
-        let parts = self.division.parts(edges, Some(found.origin.into()), length);
+        let parts = self.division.parts(edges, found.light_index(), length);
         parts.for_each(|part| self.splats[part].add(film, light));
     }
 }

@@ -154,7 +154,7 @@ impl SampleQueue for OneByOne<'_> {
                 let (ray, mut state) = rays.sample(place);
                 let mut task = Task { context: &rays.context, tracer: &mut *tracer, sample: &mut state };
                 let is_wanted = sink.is_wanted(place);
-                let light = self.0.sample(&ray, is_wanted, &mut task, sink.splats(place));
+                let light = self.0.sample(&ray, is_wanted, rays.photons, &mut task, sink.splats(place));
                 sink.add(place, light);
             }
         }
@@ -228,7 +228,7 @@ impl<'a> Work<'a> {
         let mut part = Film::part(scale);
         let mut splats = Splats::new(self.eye.settings, self.eye.settings.window(), scale);
         let one_by_one = || Box::new(OneByOne(self.integrator)) as Box<dyn SampleQueue>;
-        let mut queue = self.integrator.queue(&self.eye.context).unwrap_or_else(one_by_one);
+        let mut queue = self.integrator.queue(&self.eye.context, self.eye.photons).unwrap_or_else(one_by_one);
         while let Some(job) = self.next_job() {
             let tile = self.tiles[job as usize % self.tiles.len()];
             let pass = job as usize / self.tiles.len();

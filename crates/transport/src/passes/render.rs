@@ -252,7 +252,7 @@ impl<'a> Run<'a> {
         let mut eye = self.eye();
         if let Some((photons, counters)) = &photons {
             rendered.counters += *counters;
-            eye.context.photons = Some(photons);
+            eye.photons = Some(photons);
         }
         let keep = |film: &mut Film, mut begun: Begun, counters| match &splats {
             Some(splats) => splats.lend(film, |film, failures| {

@@ -104,7 +104,7 @@ pub fn replay(
     let mut eye = integrator.camera_rays(scene, camera, settings);
     let whole = Window::whole(width, height);
     let photons = Photons::of_iteration(integrator, &eye, &[whole], sample, None);
-    eye.context.photons = photons.as_ref().map(|(photons, _)| photons);
+    eye.photons = photons.as_ref().map(|(photons, _)| photons);
     let mut tracer = Tracer::new(scene, false);
     let (ray, mut state) = eye.sample(place);
     state.record = Some(Box::new(Record { events: Some(Vec::new()), ..Record::default() }));
@@ -112,16 +112,15 @@ pub fn replay(
     let mut splats = Splats::new(settings, whole, scale_exponent(scene));
     splats.begin(x, y, sample);
     let subpaths = integrator.light_subpaths();
-    let (radiance, contributions) =
-        match subpaths.and_then(|subpaths| subpaths.both_ends(task.context.photons)) {
-            Some(both_ends) => {
-                let sum = Sum { here: Rgb::BLACK, splats: &mut splats };
-                let mut recorded = Recorded { sum, contributions: Vec::new() };
-                both_ends.sample(&ray, true, &mut task, &mut recorded);
-                (recorded.sum.here, recorded.contributions)
-            }
-            None => (integrator.sample(&ray, true, &mut task, &mut splats), Vec::new()),
-        };
+    let (radiance, contributions) = match subpaths.and_then(|subpaths| subpaths.both_ends(eye.photons)) {
+        Some(both_ends) => {
+            let sum = Sum { here: Rgb::BLACK, splats: &mut splats };
+            let mut recorded = Recorded { sum, contributions: Vec::new() };
+            both_ends.sample(&ray, true, &mut task, &mut recorded);
+            (recorded.sum.here, recorded.contributions)
+        }
+        None => (integrator.sample(&ray, true, eye.photons, &mut task, &mut splats), Vec::new()),
+    };
     let events = state.record.and_then(|record| record.events).unwrap_or_default();
     let splats = splats.deposits.len();
     Ok(Replay { place, ray, events, radiance, splats, contributions, rays: tracer.counters.rays })

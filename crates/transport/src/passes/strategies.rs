@@ -77,7 +77,7 @@ pub fn strategies(
     for samples in iterations(integrator, &settings.samples) {
         let mut eye = integrator.camera_rays(scene, camera, settings);
         let photons = install(&pool, || Photons::of_iteration(integrator, &eye, &tiles, samples.start, None));
-        eye.context.photons = photons.as_ref().map(|(photons, _)| photons);
+        eye.photons = photons.as_ref().map(|(photons, _)| photons);
         install(&pool, || sums.add(integrator, &eye, &tiles, samples, progress))?;
     }
     if progress.is_cancelled() {
@@ -106,7 +106,7 @@ impl Sums {
         samples: Range<u32>,
         progress: &dyn Progress,
     ) -> Result<(), FilmError> {
-        let photons = eye.context.photons;
+        let photons = eye.photons;
         let both_ends = integrator.light_subpaths().and_then(|subpaths| subpaths.both_ends(photons));
         let Some(both_ends) = both_ends.map(BothEnds::splatting) else { return Ok(()) };
         let sums = Mutex::new(self);

@@ -67,7 +67,7 @@ pub fn work(
         let of_whole = whole.tiles(TILE);
         let photons =
             install(&pool, || Photons::of_iteration(integrator, &eye, &of_whole, samples.start, None));
-        eye.context.photons = photons.as_ref().map(|(photons, _)| photons);
+        eye.photons = photons.as_ref().map(|(photons, _)| photons);
         let each = |(tile, sums): &mut (Window, Vec<Sums>)| {
             count(integrator, &eye, tile, sums, &samples, with_accel, progress);
         };
@@ -97,7 +97,7 @@ fn count(
             let (ray, mut state) = eye.sample(SamplePlace { x, y, sample });
             let mut task = Task { context: &eye.context, tracer: &mut tracer, sample: &mut state };
             splats.begin(x, y, sample);
-            integrator.sample(&ray, true, &mut task, &mut splats);
+            integrator.sample(&ray, true, eye.photons, &mut task, &mut splats);
             splats.deposits.clear();
             sums[1] += u64::from(state.vertices);
         }

@@ -4,6 +4,7 @@ use crate::film::failures::SamplePlace;
 use crate::film::interval::replicate;
 use crate::light::choice::LightChoice;
 use crate::light::emission::{Emission, Guide};
+use crate::photons::Photons;
 use crate::sampling::exposure::Exposure;
 use crate::sampling::sampler::{PixelSampler, regular_pattern};
 use crate::sampling::task::{Context, SampleState};
@@ -21,6 +22,8 @@ pub struct CameraRays<'a> {
     has_lens: bool,
     /// Camera subpaths are merged with light subpaths of the same iteration.
     merges: bool,
+    /// Photons of this iteration's light subpaths, where subpaths are merged.
+    pub(crate) photons: Option<&'a Photons>,
 }
 
 /// Extents over which samples spread, each 0..=1 of what filter, aperture and shutter allow. With 0, pixels are sampled in a
@@ -57,11 +60,10 @@ impl<'a> CameraRays<'a> {
             exposure: Exposure::new(scene, settings),
             lights,
             emission: Emission::new(scene, None),
-            photons: None,
             // The paper that receives light is no surface of the scene.
             max_depth: settings.max_depth.saturating_add(u32::from(camera.receives())),
         };
-        CameraRays { context, settings, spread, has_lens: camera.has_lens(), merges: false }
+        CameraRays { context, settings, spread, has_lens: camera.has_lens(), merges: false, photons: None }
     }
 
     /// These rays for subpaths that are merged.

@@ -2,7 +2,6 @@
 
 use crate::light::choice::LightChoice;
 use crate::light::emission::Emission;
-use crate::photons::Photons;
 use crate::sampling::exposure::Exposure;
 use crate::sampling::sampler::PixelSampler;
 use crate::schedule::settings::Reach;
@@ -25,8 +24,6 @@ pub struct Context<'a> {
     pub lights: Arc<LightChoice>,
     /// Starts light subpaths.
     pub emission: Emission,
-    /// The photons of this iteration's light subpaths, where subpaths are merged.
-    pub photons: Option<&'a Photons>,
     /// Maximum number of scattering events on surfaces after the camera; 0 is emission only.
     pub max_depth: u32,
 }

@@ -253,6 +253,11 @@ impl<const N: usize> Contribution<N> {
     pub(crate) fn weighted(&self) -> Rgb {
         self.light * (self.power_factor / (self.own.0[0] + self.others.0[0]))
     }
+
+    /// Light of the scene that it comes from, where light is sorted by lights.
+    pub(crate) fn light_index(&self) -> Option<usize> {
+        (self.origin != NO_LIGHT).then_some(self.origin.into())
+    }
 }
 
 /// The factor on the weight of one of the two techniques by which a camera subpath finds a light on its own, where the

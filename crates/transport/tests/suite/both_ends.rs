@@ -13,7 +13,8 @@ use bilux_scene::{
     CameraSample, Goniometer, IntensityDistribution, Object, Ray, Scene, SceneBuilder, Spec, Texture, Value,
 };
 use bilux_transport::{
-    FILTERS, Filter, LightSubpaths, PixelIntegrator, RenderSettings, Splats, Task, Window, integrators,
+    FILTERS, Filter, LightSubpaths, Photons, PixelIntegrator, RenderSettings, Splats, Task, Window,
+    integrators,
 };
 use std::f32::consts::PI;
 use std::sync::Arc;
@@ -562,8 +563,15 @@ impl PixelIntegrator for Wrong {
 }
 
 impl LightSubpaths for Wrong {
-    fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
-        self.0.sample(ray, is_wanted, task, splats) * 1.05
+    fn sample(
+        &self,
+        ray: &Ray,
+        is_wanted: bool,
+        photons: Option<&Photons>,
+        task: &mut Task,
+        splats: &mut Splats,
+    ) -> Rgb {
+        self.0.sample(ray, is_wanted, photons, task, splats) * 1.05
     }
 }
 

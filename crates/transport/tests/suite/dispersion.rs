@@ -8,7 +8,7 @@ use bilux_scene::cameras::CameraSpec;
 use bilux_scene::generators::shapes;
 use bilux_scene::{Ray, Scene, SceneBuilder, Spec, Wavelength};
 use bilux_transport::{
-    LightSubpaths, Merging, PixelIntegrator, RenderSettings, Splats, Task, Window, integrators,
+    LightSubpaths, Merging, Photons, PixelIntegrator, RenderSettings, Splats, Task, Window, integrators,
 };
 use std::sync::Arc;
 
@@ -266,9 +266,16 @@ impl LightSubpaths for Wrong {
     fn merging(&self) -> Option<&Merging> {
         self.0.merging()
     }
-    fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
+    fn sample(
+        &self,
+        ray: &Ray,
+        is_wanted: bool,
+        photons: Option<&Photons>,
+        task: &mut Task,
+        splats: &mut Splats,
+    ) -> Rgb {
         (self.1)(task);
-        self.0.sample(ray, is_wanted, task, splats)
+        self.0.sample(ray, is_wanted, photons, task, splats)
     }
 }
 

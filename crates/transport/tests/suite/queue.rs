@@ -10,7 +10,7 @@ use bilux_math::{Rgb, Transform, Vec2, Vec3};
 use bilux_scene::generators::GENERATORS;
 use bilux_scene::texture::Texture;
 use bilux_scene::{AccelChoice, Counters, CpuLevel, Mesh, Object, Ray, Scene, SceneBuilder, Spec, Value};
-use bilux_transport::{Film, LightSubpaths, Merging, PixelIntegrator, RenderSettings, Splats, Task};
+use bilux_transport::{Film, LightSubpaths, Merging, Photons, PixelIntegrator, RenderSettings, Splats, Task};
 use std::sync::Arc;
 
 /// An integrator that does not say that many of its paths can be followed at once.
@@ -35,8 +35,15 @@ impl LightSubpaths for OneByOne {
         self.0.merging()
     }
 
-    fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
-        self.0.sample(ray, is_wanted, task, splats)
+    fn sample(
+        &self,
+        ray: &Ray,
+        is_wanted: bool,
+        photons: Option<&Photons>,
+        task: &mut Task,
+        splats: &mut Splats,
+    ) -> Rgb {
+        self.0.sample(ray, is_wanted, photons, task, splats)
     }
 }
 

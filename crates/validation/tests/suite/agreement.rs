@@ -5,7 +5,7 @@ use bilux_math::Rgb;
 use bilux_scene::{Ray, SceneBuilder, Spec, Value};
 use bilux_testing::effort;
 use bilux_testing::verdicts::{Bits, Hash};
-use bilux_transport::{LightSubpaths, PixelIntegrator, Splats, Task, integrators};
+use bilux_transport::{LightSubpaths, Photons, PixelIntegrator, Splats, Task, integrators};
 use bilux_validation::SUITE;
 use bilux_validation::agreement::{Evidence, Stage, Technique, stages, techniques};
 use bilux_validation::statistics::{histogram, uniformity_p};
@@ -122,8 +122,15 @@ impl LightSubpaths for Buggy {
     fn splats(&self) -> bool {
         !self.forgets_splats && self.integrator.splats()
     }
-    fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
-        self.integrator.sample(ray, is_wanted, task, splats) * self.camera_paths
+    fn sample(
+        &self,
+        ray: &Ray,
+        is_wanted: bool,
+        photons: Option<&Photons>,
+        task: &mut Task,
+        splats: &mut Splats,
+    ) -> Rgb {
+        self.integrator.sample(ray, is_wanted, photons, task, splats) * self.camera_paths
     }
 }
 
