@@ -1,42 +1,11 @@
 //! glTF 2.0, as GLB or as JSON with external files. See `docs/formats/gltf.md`.
 
-mod accessor;
-mod alpha;
-mod animation;
-mod area_lights;
-mod cameras;
-mod container;
-mod data;
 mod document;
-#[cfg(feature = "draco")]
-mod draco;
-mod draft;
-mod extensions;
-mod extras;
-mod glass;
-mod glossiness;
+mod geometry;
 mod graph;
-mod instances;
-mod json;
-mod lights;
-mod material;
-mod meshes;
-mod meshopt;
-mod pictures;
-mod place;
-mod posed;
-mod primitive;
-mod reader;
-mod remapped;
-mod scatter;
-mod skin;
-mod soundness;
-mod tangents;
-mod textures;
-mod topology;
-mod uri;
+mod materials;
+mod read;
 mod validate;
-mod variants;
 mod write;
 
 use bilux_import::tables::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
@@ -71,7 +40,7 @@ pub const ENTRY: SceneFormatEntry = SceneFormatEntry {
     ],
     sniff,
     up: UpHint::Is(Axis::Y),
-    read: Some(ReadFormat::Whole(reader::read)),
+    read: Some(ReadFormat::Whole(read::read)),
     write: Some(WriteFormat { frame: Frame::METRES, write: write::write }),
 };
 
@@ -79,5 +48,6 @@ pub const ENTRY: SceneFormatEntry = SceneFormatEntry {
 fn sniff(bytes: &[u8]) -> bool {
     let start = &bytes[..bytes.len().min(4096)];
     let is_object = start.trim_ascii_start().starts_with(b"{");
-    bytes.starts_with(container::MAGIC) || is_object && start.windows(7).any(|word| word == b"\"asset\"")
+    bytes.starts_with(document::container::MAGIC)
+        || is_object && start.windows(7).any(|word| word == b"\"asset\"")
 }

@@ -1,34 +1,17 @@
 //! Universal Scene Description, as text, as crate files, and in packages. See `docs/formats/usd.md`.
 
-mod cameras;
 mod composition;
-mod context;
-mod copies;
-mod instancer;
-mod labels;
-mod layer;
+mod geometry;
+mod layers;
 mod lights;
-mod list_op;
-mod meshes;
 mod mtlx;
-mod package;
-mod polygons;
-mod primvars;
 mod read;
-mod refined;
 mod scene;
 mod shading;
-mod shapes;
 mod skeletons;
 mod stage;
-mod strokes;
-mod subdivision;
-mod transforms;
 mod usda;
 mod usdc;
-mod value;
-mod volumes;
-mod wearing;
 mod write;
 
 use bilux_import::tables::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
@@ -101,8 +84,8 @@ pub const PACKAGE: SceneFormatEntry = SceneFormatEntry {
     },
     extensions: &["usdz"],
     capabilities: CAPABILITIES,
-    sniff: package::is_package,
+    sniff: read::package::is_package,
     up: UpHint::Is(Axis::Y),
-    read: Some(ReadFormat::Packed(package::read)),
+    read: Some(ReadFormat::Packed(read::package::read)),
     write: Some(WriteFormat { frame: FRAME, write: write::write_package }),
 };

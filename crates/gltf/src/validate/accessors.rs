@@ -1,8 +1,8 @@
 //! Accessors: the location of their elements, and their bounds. [glTF 2.0, 3.6.2]
 
 use super::{Check, Role, counted, floats, text, whole};
-use crate::accessor::Accessor;
-use crate::json::JsonNode;
+use crate::document::accessor::Accessor;
+use crate::document::json::JsonNode;
 use bilux_import::FormatError;
 
 /// Bytes of a component; 0 for an unknown type.

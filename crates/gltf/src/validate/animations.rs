@@ -4,7 +4,7 @@ use super::accessors::format_words;
 use super::meshes::target_count;
 use super::nodes::{as_index, has_joints};
 use super::{Check, Role, counted, is_off, text, whole};
-use crate::json::JsonNode;
+use crate::document::json::JsonNode;
 use std::collections::HashSet;
 
 /// Checks all animations, after the objects that they animate.

@@ -3,7 +3,7 @@
 use super::accessors::{component_size, format_words, width};
 use super::meshes::{attributes, of_primitive};
 use super::{Check, Role, text, whole};
-use crate::json::JsonNode;
+use crate::document::json::JsonNode;
 
 /// The formats that an attribute allows: types, then component type codes without and with normalisation.
 struct Semantic {

@@ -1,8 +1,9 @@
 //! Buffers and their views. [glTF 2.0, 3.6.1]
 
 use super::{Check, counted, text, whole};
-use crate::json::JsonNode;
-use crate::{meshopt, uri};
+use crate::document::json::JsonNode;
+use crate::document::meshopt;
+use crate::document::uri;
 
 pub(super) fn has_bytes<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let Some(index) = node.number_in_list() else { return };

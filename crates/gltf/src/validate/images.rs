@@ -1,8 +1,8 @@
 //! Images: where they are stored, the format that they declare, and the format that they have. [glTF 2.0, 3.8.3]
 
 use super::{Check, Role, text, whole};
-use crate::json::JsonNode;
-use crate::uri;
+use crate::document::json::JsonNode;
+use crate::document::uri;
 use bilux_import::input::oddities::Oddities;
 
 pub(super) fn source<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {

@@ -1,7 +1,7 @@
 //! Materials, and which of their extensions can be combined.
 
 use super::{Check, floats, number, text, whole};
-use crate::json::JsonNode;
+use crate::document::json::JsonNode;
 use std::collections::HashSet;
 
 pub(super) fn cutoff<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {

@@ -2,7 +2,7 @@
 
 use super::materials::coordinates;
 use super::{Check, Role, counted, text, whole};
-use crate::json::JsonNode;
+use crate::document::json::JsonNode;
 
 /// The attributes of a primitive, each with its accessor and the accessor's index.
 pub(super) fn attributes<'d>(

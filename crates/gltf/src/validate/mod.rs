@@ -24,13 +24,13 @@ mod skins;
 mod vertices;
 mod walk;
 
-use super::accessor::Accessor;
-use super::document::Document;
-use super::json::JsonNode;
+use crate::document::accessor::Accessor;
+use crate::document::json::JsonNode;
+use crate::document::json_document::Document;
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 use bilux_import::input::oddities::Oddities;
-pub(super) use images::compare as image;
+pub(crate) use images::compare as image;
 use std::collections::{HashMap, HashSet};
 
 /// The state of a validation.
@@ -79,7 +79,7 @@ impl Role {
 }
 
 /// Reports every fault of a document as a warning, except for those of the bytes of images ([`image`]).
-pub(super) fn document(document: &Document, budget: &mut Budget, oddities: &mut Oddities) {
+pub(crate) fn document(document: &Document, budget: &mut Budget, oddities: &mut Oddities) {
     let mut check = Check {
         document,
         root: document.root,

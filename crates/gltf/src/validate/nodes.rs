@@ -2,7 +2,7 @@
 
 use super::meshes::target_count;
 use super::{Check, counted, floats, whole};
-use crate::json::JsonNode;
+use crate::document::json::JsonNode;
 use bilux_math::DVec3;
 
 pub(super) fn transform<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {

@@ -3,7 +3,7 @@
 use super::extension_kinds::{ANYWHERE, EXTENSIONS, WITHOUT_OBJECT};
 use super::schema::singular;
 use super::{Check, number, text};
-use crate::json::JsonNode;
+use crate::document::json::JsonNode;
 use std::collections::HashSet;
 use std::f64::consts::PI;
 

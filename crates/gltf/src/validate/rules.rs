@@ -11,7 +11,7 @@ use super::schema::Kind;
 use super::{
     accessors, animations, attributes, buffers, images, materials, meshes, nodes, root, skins, vertices,
 };
-use crate::json::JsonNode;
+use crate::document::json::JsonNode;
 
 /// A rule.
 pub(super) struct Rule {

@@ -3,7 +3,7 @@
 use super::accessors::format_words;
 use super::nodes::{named_nodes, parents, root_of, skin_of};
 use super::{Check, Role, counted, text, whole};
-use crate::json::JsonNode;
+use crate::document::json::JsonNode;
 
 pub(super) fn matrices<'d>(check: &mut Check<'d, '_>, skin: JsonNode<'d>) {
     let Some((index, accessor)) = check.named("accessors", skin, "inverseBindMatrices") else { return };

@@ -2,7 +2,7 @@
 
 use super::meshes::{have, of_primitive};
 use super::{Check, is_off, text, whole};
-use crate::json::JsonNode;
+use crate::document::json::JsonNode;
 
 /// The tolerance on unit lengths; bytes and halves stay within it.
 const LENGTH_TOLERANCE: f32 = 0.01;

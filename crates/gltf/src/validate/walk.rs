@@ -4,7 +4,7 @@ use super::extension_kinds::{ANYWHERE, EXTENSIONS};
 use super::rules::RULES;
 use super::schema::{Kind, Property, Shape, singular};
 use super::{Check, counted, whole_float};
-use crate::json::JsonNode;
+use crate::document::json::JsonNode;
 use bilux_scene::error::nearest_name;
 use serde_json::Value;
 use std::collections::HashSet;

@@ -1,4 +1,4 @@
-//! Writes glTF materials: the inverse of [`super::super::material`].
+//! Writes glTF materials: the inverse of [`crate::materials::material`].
 
 use super::Document;
 use super::kinds::as_principled;

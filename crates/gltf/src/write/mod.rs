@@ -9,7 +9,7 @@ mod material;
 mod nodes;
 mod pictures;
 
-use super::extras::{CATEGORY, SURROUNDINGS};
+use crate::document::extras::{CATEGORY, SURROUNDINGS};
 use bilux_import::FormatError;
 use bilux_import::output::bake::name_of;
 use bilux_import::output::writing::Writing;
@@ -20,20 +20,20 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
 /// A document under construction.
-pub(super) struct Document<'s> {
-    pub(super) scene: &'s SceneBuilder,
+pub(crate) struct Document<'s> {
+    pub(crate) scene: &'s SceneBuilder,
     buffer: Buffer,
     /// The lists of the document by name, in the order of their indices.
     lists: BTreeMap<&'static str, Vec<Json>>,
     extensions: BTreeSet<&'static str>,
     /// Samplers and images written so far, by content.
-    pub(super) known: HashMap<String, usize>,
+    pub(crate) known: HashMap<String, usize>,
     meshes: HashMap<(*const Mesh, usize), usize>,
     /// The root nodes of the scene.
     roots: Vec<usize>,
 }
 
-pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), FormatError> {
+pub(crate) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), FormatError> {
     if !scene.settings.0.is_empty() {
         writing.warn("glTF files cannot store render settings: left out");
     }
@@ -65,20 +65,20 @@ pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), F
 
 impl Document<'_> {
     /// Adds an item to a list of the document, and returns its index.
-    pub(super) fn push(&mut self, list: &'static str, item: Json) -> usize {
+    pub(crate) fn push(&mut self, list: &'static str, item: Json) -> usize {
         let list = self.lists.entry(list).or_default();
         list.push(item);
         list.len() - 1
     }
 
     /// Records that an extension is used.
-    pub(super) fn uses(&mut self, extension: &'static str) -> &'static str {
+    pub(crate) fn uses(&mut self, extension: &'static str) -> &'static str {
         self.extensions.insert(extension);
         extension
     }
 
     /// Adds a root node to the scene.
-    pub(super) fn root(&mut self, node: Json) -> usize {
+    pub(crate) fn root(&mut self, node: Json) -> usize {
         let index = self.push("nodes", node);
         self.roots.push(index);
         index

@@ -2,7 +2,7 @@
 
 use super::layers::Layers;
 use super::node::{ArcKind, Node, absolute};
-use crate::value::{Reference, TimeOffset, Value};
+use crate::layers::value::{Reference, TimeOffset, Value};
 use bilux_import::FormatError;
 use bilux_scene::Span;
 use std::path::PathBuf;

@@ -4,8 +4,8 @@ use super::arcs::{Target, targets};
 use super::layers::Layers;
 use super::node::{ArcKind, Node, is_within, names_in};
 use super::variants;
-use crate::layer::MAX_DEPTH;
-use crate::value::{Text, TimeOffset};
+use crate::layers::layer::MAX_DEPTH;
+use crate::layers::value::{Text, TimeOffset};
 use bilux_import::FormatError;
 
 /// References of references of references.

@@ -1,9 +1,11 @@
 //! Opens layers, each once, and stacks them with their sublayers.
 
 use super::packages::{in_package, root_of_package};
-use crate::layer::Layer;
-use crate::value::{TimeOffset, Value};
-use crate::{mtlx, usda, usdc};
+use crate::layers::layer::Layer;
+use crate::layers::value::{TimeOffset, Value};
+use crate::mtlx;
+use crate::usda;
+use crate::usdc;
 use bilux_import::FormatError;
 use bilux_import::input::oddities::Oddities;
 use bilux_import::input::reading::Reading;

@@ -9,8 +9,8 @@ mod packages;
 mod prims;
 mod variants;
 
-pub(super) use clips::Clipped;
-pub(super) use layers::Layers;
-pub(super) use node::Opinion;
-pub(super) use packages::root_of_package;
-pub(super) use prims::{Prim, compose};
+pub(crate) use clips::Clipped;
+pub(crate) use layers::Layers;
+pub(crate) use node::Opinion;
+pub(crate) use packages::root_of_package;
+pub(crate) use prims::{Prim, compose};

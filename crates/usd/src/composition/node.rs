@@ -2,7 +2,7 @@
 //! is composed with.
 
 use super::layers::Layers;
-use crate::value::{Text, TimeOffset};
+use crate::layers::value::{Text, TimeOffset};
 use std::sync::Arc;
 
 /// Kind of arc that brought a node in, the strongest first.

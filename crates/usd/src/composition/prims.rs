@@ -4,8 +4,8 @@ use super::clips::{self, Clipped};
 use super::expand::{choose, expand};
 use super::layers::Layers;
 use super::node::{Node, Opinion};
-use crate::layer::{MAX_DEPTH, Specifier};
-use crate::value::Text;
+use crate::layers::layer::{MAX_DEPTH, Specifier};
+use crate::layers::value::Text;
 use bilux_import::FormatError;
 use std::collections::HashSet;
 

@@ -2,7 +2,7 @@
 
 use super::layers::Layers;
 use super::node::Node;
-use crate::value::{Text, Value};
+use crate::layers::value::{Text, Value};
 
 /// The way to the first node with a set that was not chosen from, and the set.
 pub(super) fn next(node: &Node, layers: &Layers) -> Option<(Vec<usize>, Text)> {

@@ -1,7 +1,7 @@
 //! `DomeLight`: the surroundings.
 
 use super::Light;
-use crate::context::Context;
+use crate::stage::context::Context;
 use bilux_import::FormatError;
 use bilux_import::input::reading::Texels;
 use bilux_math::transcendental::{acos_f64, atan2_f64, sin_cos_f64};

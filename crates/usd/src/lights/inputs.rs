@@ -1,7 +1,7 @@
 //! Attributes of lights.
 
-use crate::context::Context;
 use crate::stage::Stage;
+use crate::stage::context::Context;
 use bilux_import::FormatError;
 use bilux_math::Rgb;
 

@@ -4,9 +4,9 @@ mod dome;
 mod inputs;
 mod shaping;
 
-use super::context::Context;
-use super::meshes::name_of;
-use super::stage::Stage;
+use crate::geometry::meshes::name_of;
+use crate::stage::Stage;
+use crate::stage::context::Context;
 use bilux_import::FormatError;
 use bilux_math::transcendental::{powf_f64, sin_cos_f64, sin_f64};
 use bilux_math::{DMat4, DVec3, Rgb};
@@ -21,7 +21,7 @@ use std::sync::Arc;
 const AROUND: u32 = 64;
 
 /// True for types of prims that are lights.
-pub(super) fn is_light(kind: &str) -> bool {
+pub(crate) fn is_light(kind: &str) -> bool {
     KINDS.contains(&kind) || matches!(kind, "PortalLight" | "GeometryLight")
 }
 
@@ -42,7 +42,7 @@ struct Light<'a> {
 }
 
 /// Adds the light of a prim.
-pub(super) fn add(stage: &Stage, prim: u32, world: &DMat4, context: &mut Context) -> Result<(), FormatError> {
+pub(crate) fn add(stage: &Stage, prim: u32, world: &DMat4, context: &mut Context) -> Result<(), FormatError> {
     let kind = stage.prim(prim).type_name.clone();
     if !KINDS.contains(&&*kind) {
         context.sink.oddities.not_shown(&format!("lights of type {kind}"), || stage.at(prim));

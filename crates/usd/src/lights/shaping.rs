@@ -1,8 +1,8 @@
 //! `ShapingAPI`: lights that emit less in some directions.
 
 use super::inputs::number;
-use crate::context::Context;
 use crate::stage::Stage;
+use crate::stage::context::Context;
 use bilux_import::FormatError;
 use bilux_math::DVec3;
 use bilux_math::transcendental::{acos_f64, atan2_f64, powf_f64, sin_cos_f64};

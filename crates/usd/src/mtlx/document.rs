@@ -1,8 +1,8 @@
 //! From a document to a layer.
 
 use super::nodes::Nodes;
-use crate::layer::{Layer, PRIM_BYTES, PrimSpec, Specifier};
-use crate::value::{Text, Value};
+use crate::layers::layer::{Layer, PRIM_BYTES, PrimSpec, Specifier};
+use crate::layers::value::{Text, Value};
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 use bilux_import::bytes::text::whole_file;

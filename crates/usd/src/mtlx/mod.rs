@@ -5,4 +5,4 @@ mod document;
 mod nodes;
 mod values;
 
-pub(super) use document::{is_document, read};
+pub(crate) use document::{is_document, read};

@@ -1,9 +1,9 @@
 //! Nodes and what is connected to them.
 
 use super::values::value;
-use crate::layer::{Fields, Layer, PROPERTY_BYTES, Property};
-use crate::list_op::ListOp;
-use crate::value::{Text, Value};
+use crate::layers::layer::{Fields, Layer, PROPERTY_BYTES, Property};
+use crate::layers::list_op::ListOp;
+use crate::layers::value::{Text, Value};
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 use bilux_import::bytes::xml::Xml;

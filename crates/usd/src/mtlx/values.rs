@@ -1,6 +1,6 @@
 //! Values of inputs, by their types. [MaterialX: types]
 
-use crate::value::Value;
+use crate::layers::value::Value;
 
 /// The value of a text; `None` if it is not one of this type.
 pub(super) fn value(kind: &str, text: &str) -> Option<Value> {

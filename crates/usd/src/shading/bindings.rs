@@ -1,7 +1,7 @@
 //! Which material a prim has.
 
+use crate::layers::value::{Text, Value};
 use crate::stage::Stage;
-use crate::value::{Text, Value};
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 

@@ -1,8 +1,8 @@
 //! A material under construction.
 
 use super::network::{Input, input};
+use crate::layers::value::Text;
 use crate::stage::Stage;
-use crate::value::Text;
 use bilux_import::FormatError;
 use bilux_import::geometry::displacement::Displacement;
 use bilux_import::input::reading::Reading;

@@ -13,7 +13,7 @@ mod setting;
 mod textures;
 mod volumes;
 
-pub(super) use bindings::{bound, subset_faces};
-pub(super) use draft::Shaded;
-pub(super) use materials::material;
-pub(super) use volumes::{Filling, filling};
+pub(crate) use bindings::{bound, subset_faces};
+pub(crate) use draft::Shaded;
+pub(crate) use materials::material;
+pub(crate) use volumes::{Filling, filling};

@@ -1,8 +1,8 @@
 //! Shaders and what is connected to them.
 
 use super::arnold;
+use crate::layers::value::Text;
 use crate::stage::{Found, Stage};
-use crate::value::Text;
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 

@@ -2,7 +2,7 @@
 
 use super::draft::Draft;
 use super::network::{Input, constant, input, kind};
-use crate::value::Text;
+use crate::layers::value::Text;
 use bilux_import::FormatError;
 use bilux_math::glam::{DAffine2, DMat2, DVec2};
 use bilux_math::transcendental::sin_cos_f64;

@@ -1,9 +1,9 @@
 //! Inside of volumes, as a material states it: MaterialX's `volume`, and Arnold's `standard_volume`.
 
 use super::network::{Input, input, kind, resolve};
-use crate::context::Context;
+use crate::layers::value::{Text, Value};
 use crate::stage::Stage;
-use crate::value::{Text, Value};
+use crate::stage::context::Context;
 use bilux_import::FormatError;
 use bilux_math::Rgb;
 use bilux_math::transcendental::ln_f64;

@@ -1,7 +1,7 @@
 //! `SkelAnimation`: where joints are, and how much there is of blend shapes.
 
+use crate::layers::value::{Array, Text};
 use crate::stage::Stage;
-use crate::value::{Array, Text};
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 use bilux_import::input::choice::named_or_numbered;

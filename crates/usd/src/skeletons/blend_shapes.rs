@@ -1,8 +1,8 @@
 //! `BlendShape`: offsets of points and normals, with shapes in between.
 
 use super::skeleton::Pose;
+use crate::layers::value::{Array, Text};
 use crate::stage::Stage;
-use crate::value::{Array, Text};
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 use bilux_import::geometry::deformation::amounts;

@@ -2,9 +2,9 @@
 
 use super::binding::{Binding, INDICES, JOINTS, SHAPE, WEIGHTS};
 use super::skeleton::Pose;
+use crate::layers::value::{Array, Text, Value};
 use crate::stage::Stage;
-use crate::transforms;
-use crate::value::{Array, Text, Value};
+use crate::stage::transforms;
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 use bilux_import::geometry::deformation::{Blends, DualBlends, DualJoint};

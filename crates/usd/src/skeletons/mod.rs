@@ -7,7 +7,7 @@ mod influences;
 mod rig;
 mod skeleton;
 
-pub(super) use animation::playing;
-pub(super) use binding::Binding;
-pub(super) use rig::{Bent, Rig};
-pub(super) use skeleton::Pose;
+pub(crate) use animation::playing;
+pub(crate) use binding::Binding;
+pub(crate) use rig::{Bent, Rig};
+pub(crate) use skeleton::Pose;

@@ -1,8 +1,8 @@
 //! Skeletons in a pose.
 
 use super::animation::{played, source};
+use crate::layers::value::{Array, Text};
 use crate::stage::Stage;
-use crate::value::{Array, Text};
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 use bilux_import::input::oddities::Oddities;

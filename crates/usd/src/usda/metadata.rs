@@ -2,9 +2,9 @@
 
 use super::lexer::Lexer;
 use super::values::{dictionary, offset, reference, untyped};
-use crate::layer::Fields;
-use crate::list_op::ListOp;
-use crate::value::{Reference, Text, TimeOffset, Value};
+use crate::layers::layer::Fields;
+use crate::layers::list_op::ListOp;
+use crate::layers::value::{Reference, Text, TimeOffset, Value};
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 

@@ -6,4 +6,4 @@ mod parser;
 mod types;
 mod values;
 
-pub(super) use parser::{MAGIC, read};
+pub(crate) use parser::{MAGIC, read};

@@ -3,9 +3,11 @@
 use super::lexer::Lexer;
 use super::metadata::{Change, metadata, paths};
 use super::values::{samples, typed};
-use crate::layer::{Fields, Layer, MAX_DEPTH, PRIM_BYTES, PROPERTY_BYTES, PrimSpec, Property, Specifier};
-use crate::list_op::ListOp;
-use crate::value::Text;
+use crate::layers::layer::{
+    Fields, Layer, MAX_DEPTH, PRIM_BYTES, PROPERTY_BYTES, PrimSpec, Property, Specifier,
+};
+use crate::layers::list_op::ListOp;
+use crate::layers::value::Text;
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 use std::path::PathBuf;

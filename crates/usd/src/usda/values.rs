@@ -2,9 +2,9 @@
 
 use super::lexer::Lexer;
 use super::types::{Class, type_named};
-use crate::layer::MAX_DEPTH;
-use crate::list_op::ListOp;
-use crate::value::{Array, Numbers, Reference, Text, TimeOffset, Value};
+use crate::layers::layer::MAX_DEPTH;
+use crate::layers::list_op::ListOp;
+use crate::layers::value::{Array, Numbers, Reference, Text, TimeOffset, Value};
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 use std::sync::Arc;

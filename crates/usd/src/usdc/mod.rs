@@ -8,5 +8,5 @@ mod specs;
 mod types;
 mod values;
 
-pub(super) use sections::MAGIC;
-pub(super) use specs::read;
+pub(crate) use sections::MAGIC;
+pub(crate) use specs::read;

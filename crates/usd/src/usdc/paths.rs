@@ -2,8 +2,8 @@
 
 use super::bytes::Bytes;
 use super::integers::integers;
-use crate::layer::MAX_DEPTH;
-use crate::value::Text;
+use crate::layers::layer::MAX_DEPTH;
+use crate::layers::value::Text;
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 

@@ -3,7 +3,7 @@
 use super::bytes::{Bytes, broken};
 use super::integers::{integers, unpack};
 use super::paths::Paths;
-use crate::value::Text;
+use crate::layers::value::Text;
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 use std::borrow::Cow;

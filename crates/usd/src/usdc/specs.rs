@@ -2,8 +2,8 @@
 
 use super::bytes::broken;
 use super::sections::{Crate, END, Specs, open};
-use crate::layer::{Layer, PRIM_BYTES, PROPERTY_BYTES, PrimSpec, Property, Specifier};
-use crate::value::{Text, Value};
+use crate::layers::layer::{Layer, PRIM_BYTES, PROPERTY_BYTES, PrimSpec, Property, Specifier};
+use crate::layers::value::{Text, Value};
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 use std::borrow::Cow;

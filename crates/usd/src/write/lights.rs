@@ -1,4 +1,4 @@
-//! Writes lights: the inverse of [`super::super::lights`].
+//! Writes lights: the inverse of [`crate::lights`].
 
 use super::document::{Document, Look};
 use super::placement::placed;

@@ -1,4 +1,4 @@
-//! Writes materials as `UsdPreviewSurface`: the inverse of [`super::super::shading`].
+//! Writes materials as `UsdPreviewSurface`: the inverse of [`crate::shading`].
 
 use super::document::{Document, Look};
 use super::draft::Draft;

@@ -22,13 +22,13 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Writes a layer.
-pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), FormatError> {
+pub(crate) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), FormatError> {
     writing.main = layer(scene, writing)?;
     Ok(())
 }
 
 /// Writes a package: the layer first, then its pictures.
-pub(super) fn write_package(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), FormatError> {
+pub(crate) fn write_package(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), FormatError> {
     let layer = layer(scene, writing)?;
     let mut members = vec![(format!("{}.usda", writing.stem), layer)];
     members.extend(writing.take_beside());

@@ -7,7 +7,7 @@ pub(crate) use turns::Clipped;
 
 use super::layers::Layers;
 use super::node::{Node, Opinion};
-use crate::value::{Text, Value};
+use crate::layers::value::{Text, Value};
 use bilux_import::FormatError;
 use stated::{Reader, Stated, stronger};
 use std::collections::BTreeMap;

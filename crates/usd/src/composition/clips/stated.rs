@@ -3,7 +3,7 @@
 use super::turns::{Active, ClipSet, Clipped, MAX_REACH, ROUNDING};
 use crate::composition::layers::Layers;
 use crate::composition::node::{Node, Opinion};
-use crate::value::{Text, Value};
+use crate::layers::value::{Text, Value};
 use bilux_import::FormatError;
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -1,6 +1,6 @@
 //! Which clip is in use, and at which of its times.
 
-use crate::value::{Text, TimeOffset};
+use crate::layers::value::{Text, TimeOffset};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
