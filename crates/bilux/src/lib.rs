@@ -13,45 +13,19 @@
 //! Read a scene with [`load`] or make one with [`generate`]; say in a [`JobRequest`] what you want of it; the [`settings`] combine
 //! that with what the scene's file asks for; and a [`Job`] renders it.
 
-pub mod budget;
-mod built;
-mod camera_choice;
 pub mod checkpoint;
-pub mod compositing;
-pub mod description;
-mod display;
 pub mod encoding;
 pub mod error;
-pub mod explain;
-pub mod fingerprint;
+mod inspection;
+mod interface;
 pub mod job;
-mod judged;
-mod labels;
-mod layers;
-pub mod lidar;
-pub mod light_path;
-pub mod memory;
-pub mod memory_limit;
-pub mod merging;
-pub mod metadata;
-mod outcome;
-mod own_light;
-pub mod parts;
-pub mod path_drawing;
-pub mod presets;
-pub mod progressive;
+mod limits;
+mod output;
+mod preparation;
 mod request;
-mod scene_warnings;
-pub mod sensing;
-pub mod series;
+mod sensors;
 pub mod session;
 pub mod settings;
-pub mod strategies;
-pub mod tables;
-pub mod transient;
-pub mod watch;
-pub mod wording;
-mod writing;
 
 pub use bilux_accel as accel;
 pub use bilux_formats as formats;
@@ -60,27 +34,56 @@ pub use bilux_pictures as pictures;
 pub use bilux_scene as scene;
 pub use bilux_transport as transport;
 pub use bilux_visibility as visibility;
+pub use inspection::explain;
+pub use inspection::light_path;
+pub use inspection::path_drawing;
+pub use inspection::strategies;
+
+pub use interface::tables;
+pub use interface::wording;
+pub use job::compositing;
+pub use job::fingerprint;
+pub use job::parts;
+pub use job::progressive;
+pub use job::series;
+pub use limits::budget;
+pub use limits::memory;
+pub use limits::memory_limit;
+pub use output::description;
+pub use output::merging;
+pub use output::metadata;
+pub use preparation::presets;
+pub use sensors::lidar;
+pub use sensors::sensing;
+pub use sensors::transient;
+pub use session::watch;
 
 pub use bilux_transport::Silent as Quiet;
-pub use built::Built;
-pub use compositing::ExtraLayers;
-pub use display::Display;
 pub use error::Error;
 pub use job::Job;
-pub use outcome::{Outcome, Surfaces};
-pub use progressive::{Budget, Progressive};
+pub use job::compositing::ExtraLayers;
+pub use job::outcome::{Outcome, Surfaces};
+pub use job::progressive::{Budget, Progressive};
+pub use job::series::Series;
+pub use output::display::Display;
+pub use output::writing::{lost_alpha, lost_transparency};
+pub use preparation::built::Built;
 pub use request::{Denoised, JobRequest};
-pub use series::Series;
 pub use session::{Edit, Session};
 pub use settings::Settings;
-pub use writing::{lost_alpha, lost_transparency};
 
 use bilux_scene::{SceneBuilder, Spec};
 use std::path::Path;
 
 /// Names that most programs need.
 pub mod prelude {
-    pub use crate::{Denoised, Error, Job, JobRequest, Outcome, Quiet, Settings};
+    pub use crate::Denoised;
+    pub use crate::Error;
+    pub use crate::Job;
+    pub use crate::JobRequest;
+    pub use crate::Outcome;
+    pub use crate::Quiet;
+    pub use crate::Settings;
     pub use bilux_math::{Rgb, Transform, Vec2, Vec3};
     pub use bilux_pictures::Picture;
     pub use bilux_scene::cameras::CameraSpec;

@@ -5,7 +5,8 @@ use super::repository::Repository;
 use super::violation::Violation;
 
 /// The crates that are divided so.
-const CRATES: &[&str] = &["crates/transport", "crates/import", "crates/cli"];
+const CRATES: &[&str] =
+    &["crates/transport", "crates/import", "crates/cli", "crates/gltf", "crates/usd", "crates/bilux"];
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let is_loose = |path: &str| {

@@ -3,12 +3,12 @@
 use super::subject::Subject;
 use super::{Found, Job};
 use crate::Error;
-use crate::built::Built;
-use crate::camera_choice::choose_camera;
-use crate::own_light::{self, OwnLight};
-use crate::presets::{self, Studio};
+use crate::job::own_light::{self, OwnLight};
+use crate::preparation::built::Built;
+use crate::preparation::camera_choice::choose_camera;
+use crate::preparation::presets::{self, Studio};
+use crate::preparation::scene_warnings::{self, oddities};
 use crate::request::JobRequest;
-use crate::scene_warnings::{self, oddities};
 use crate::settings::{Settings, shutter_of};
 use bilux_math::Rgb;
 use bilux_scene::{AccelChoice, Orientation, Reader, Scene, SceneBuilder, Spec, Warning};

@@ -1,16 +1,24 @@
 //! One render: a scene, a camera, an integrator and settings, combined and checked.
-
+pub mod compositing;
 mod denoising;
+pub mod fingerprint;
+pub(crate) mod labels;
+pub(crate) mod layers;
 mod making;
+pub(crate) mod outcome;
+pub(crate) mod own_light;
+pub mod parts;
+pub mod progressive;
 mod rendering;
 mod sensors;
+pub mod series;
 mod subject;
 mod writing;
 
 use crate::Error;
-use crate::fingerprint::fingerprint;
+use crate::job::fingerprint::fingerprint;
+use crate::job::series::Series;
 use crate::request::JobRequest;
-use crate::series::Series;
 use crate::settings::Settings;
 use bilux_pictures::denoise::DenoiserChoice;
 use bilux_scene::{Camera, Orientation, Scene, SceneBuilder, Warning};

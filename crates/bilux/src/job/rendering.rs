@@ -1,8 +1,8 @@
 //! Sampling of a job: all samples within a limit of time, ranges of them, those of one pixel, or one.
 
 use super::{Job, Subject, denoising};
-use crate::budget::time_for_rendering;
-use crate::outcome::Surfaces;
+use crate::job::outcome::Surfaces;
+use crate::limits::budget::time_for_rendering;
 use crate::{Error, Outcome};
 use bilux_transport::aovs::Aov;
 use bilux_transport::{

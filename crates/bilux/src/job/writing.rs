@@ -1,9 +1,9 @@
 //! Display, description and writing of a job's pictures.
 
 use super::Job;
-use crate::description::{options, row_vectors};
-use crate::display::Display;
-use crate::metadata::{ASKED, FINGERPRINT, IRRADIANCE, MEASURES, PIXEL_SHAPE, SETTINGS, SOFTWARE};
+use crate::output::description::{options, row_vectors};
+use crate::output::display::Display;
+use crate::output::metadata::{ASKED, FINGERPRINT, IRRADIANCE, MEASURES, PIXEL_SHAPE, SETTINGS, SOFTWARE};
 use crate::settings::{Background, Settings};
 use crate::{Error, Outcome};
 use bilux_pictures::{Picture, WriteOptions};

@@ -19,8 +19,9 @@ impl JobRequest {
 
 mod settings;
 
+use crate::limits::memory::Memory;
 use crate::settings::Settings;
-use crate::{Error, Series, memory::Memory};
+use crate::{Error, Series};
 use bilux_math::Vec3;
 use bilux_scene::{Parameters, SceneBuilder, Value};
 use bilux_transport::Window;

@@ -1,12 +1,12 @@
 //! A scene that is edited while its picture is refined: what a viewer shows, and what makes many pictures of one scene.
-
 mod edit;
 mod showing;
+pub mod watch;
 
 pub use edit::Edit;
 
-use crate::built::Built;
-use crate::progressive::{Budget, Progressive};
+use crate::job::progressive::{Budget, Progressive};
+use crate::preparation::built::Built;
 use crate::{Denoised, Error, Job, JobRequest, Outcome, Settings};
 use bilux_pictures::Picture;
 use bilux_scene::{Parameters, SceneBuilder, TreeWork, Value};

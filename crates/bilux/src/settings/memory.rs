@@ -1,7 +1,7 @@
 //! The memory that a picture takes.
 
 use super::Settings;
-use crate::memory::Memory;
+use crate::limits::memory::Memory;
 use bilux_scene::SceneBuilder;
 
 /// Bytes per pixel, with its sums, its layers, and what measuring the noise and denoising take; measured up to 180.

@@ -14,7 +14,9 @@ mod studio;
 mod tree;
 mod view;
 
-use crate::{Error, judged::Judged, presets::Studio};
+use crate::Error;
+use crate::preparation::judged::Judged;
+use crate::preparation::presets::Studio;
 use accel::accel_choice;
 pub use background::Background;
 use background::background;

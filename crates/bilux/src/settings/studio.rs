@@ -1,7 +1,7 @@
 //! The settings for how the studio photographs a model.
 
 use crate::Error;
-use crate::presets::{Ground, Studio};
+use crate::preparation::presets::{Ground, Studio};
 use bilux_scene::{Axis, Reader, SceneError, Value};
 
 /// Turns two or three numbers into the text form of an orbit or a point: `[30, 15]` in scene files is `--set orbit=30,15`.

@@ -2,9 +2,9 @@
 //! much of what the camera sees is lit by it, and how brightly.
 
 use crate::Error;
-use crate::camera_choice::choose_camera;
-use crate::judged::Judged;
-use crate::presets::{self, Studio};
+use crate::preparation::camera_choice::choose_camera;
+use crate::preparation::judged::Judged;
+use crate::preparation::presets::{self, Studio};
 use crate::settings::{Settings, shutter_of};
 use bilux_scene::presets::{added_lights, has_own_light, may_be_lit, seems_lit};
 use bilux_scene::{AccelChoice, BuiltParts, Scene, SceneBuilder};

@@ -1,7 +1,7 @@
 //! Errors of all parts of Bilux.
 
 use crate::encoding::EncodingError;
-use crate::memory::Memory;
+use crate::limits::memory::Memory;
 use bilux_formats::FormatError;
 use bilux_pictures::PictureError;
 use bilux_scene::SceneError;

@@ -1,10 +1,11 @@
 //! Series of pictures, a turntable or an animation: what they have in common. If it changed from one to the next, they would
 //! flicker.
 
-use crate::judged::Judged;
-use crate::presets::{Studio, set_upright};
+use crate::Error;
+use crate::job::own_light;
+use crate::preparation::judged::Judged;
+use crate::preparation::presets::{Studio, set_upright};
 use crate::request::JobRequest;
-use crate::{Error, own_light};
 use bilux_scene::{BuiltParts, SceneBuilder};
 
 /// The maximum number of views in which a turntable's own light is measured.

@@ -1,7 +1,7 @@
 //! Layers for compositors that are made once the picture is there: which objects cover what, and the light in parts.
 
 use crate::job::Subject;
-use crate::labels;
+use crate::job::labels;
 use crate::{Error, Job, Outcome};
 use bilux_math::Rgb;
 use bilux_pictures::Picture;

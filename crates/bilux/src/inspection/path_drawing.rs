@@ -1,7 +1,7 @@
 //! Draws the path of a sample into a picture, in the colours of the viewer: the more light a segment brings, the wider it is.
 
 use crate::Error;
-use crate::light_path::{LightPath, PathSegment};
+use crate::inspection::light_path::{LightPath, PathSegment};
 use bilux_math::{Rgb, Vec2};
 use bilux_pictures::{ColourSpace, Picture};
 use bilux_transport::VertexKind;

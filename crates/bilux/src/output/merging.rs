@@ -1,7 +1,7 @@
 //! Partial renders, merged into one picture: which samples they have together, and which they lack.
 
-pub use crate::metadata::ASKED;
-use crate::metadata::{SETTINGS, SOFTWARE, is_handed_on};
+pub use crate::output::metadata::ASKED;
+use crate::output::metadata::{SETTINGS, SOFTWARE, is_handed_on};
 use crate::{Display, Error};
 use bilux_pictures::Picture;
 use bilux_transport::{Coverage, Film, MergedLayers, Window};

@@ -1,7 +1,7 @@
 //! Metadata of a picture: the version that made it, the fingerprint of its scene and settings, the settings that make it again,
 //! and its view. Nothing that differs from one run to the next: no date, no time, no threads.
 
-pub use crate::metadata::{FINGERPRINT, SETTINGS, SOFTWARE, is_handed_on};
+pub use crate::output::metadata::{FINGERPRINT, SETTINGS, SOFTWARE, is_handed_on};
 use crate::settings::{RENDER, Settings};
 use bilux_math::Mat4;
 use bilux_scene::{Parameters, Value};

@@ -1,6 +1,6 @@
 //! Messages in the words of Python. The library calls options as the command line does; here they are keywords.
 
-use crate::presets::SURROUNDINGS;
+use crate::preparation::presets::SURROUNDINGS;
 use crate::settings::RENDER;
 use bilux_math::registry::ParameterKind;
 use bilux_pictures::TONEMAPS;

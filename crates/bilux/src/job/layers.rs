@@ -1,6 +1,7 @@
 //! Products of a render besides its light: layers, and the denoised picture.
 
-use crate::{Error, Outcome, labels};
+use crate::job::labels;
+use crate::{Error, Outcome};
 use bilux_math::Rgb;
 use bilux_math::parallel::table;
 use bilux_pictures::denoise::{DenoiserChoice, Layer, Noisy, Source, repainted};

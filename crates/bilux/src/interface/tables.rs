@@ -134,7 +134,7 @@ pub static TABLES: &[Table] = &[
     Table {
         name: "presets",
         summary: "cameras and surroundings for files without a camera or lights",
-        rows: rows!(crate::presets::PRESETS),
+        rows: rows!(crate::preparation::presets::PRESETS),
         details: none,
     },
     Table {

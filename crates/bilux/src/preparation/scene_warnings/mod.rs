@@ -3,7 +3,7 @@
 mod sight;
 mod textures;
 
-use crate::presets::{Ground, Studio};
+use crate::preparation::presets::{Ground, Studio};
 use bilux_math::transcendental::{asin, atan2};
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::{
