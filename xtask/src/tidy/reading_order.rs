@@ -48,7 +48,7 @@ mod tests {
         let page = format!("[`scene`](crates/scene/src), from the bottom up:\n{list}\n\n`late`\n");
         let repository = Repository::planted(&[
             ("crates/scene/src/lib.rs", "mod mesh;\nmod scene;\n"),
-            ("crates/scene/src/mesh.rs", "pub struct Mesh;\n"),
+            ("crates/scene/src/mesh/mod.rs", "pub struct Mesh;\n"),
             ("crates/scene/src/scene.rs", "use crate::mesh::Mesh;\nstruct Scene(Mesh);\n"),
         ]);
         let found = check_crate(&page, "crates/scene", &Modules::read(&repository, "crates/scene"));

@@ -5,8 +5,15 @@ use super::repository::Repository;
 use super::violation::Violation;
 
 /// The crates that are divided so.
-const CRATES: &[&str] =
-    &["crates/transport", "crates/import", "crates/cli", "crates/gltf", "crates/usd", "crates/bilux"];
+const CRATES: &[&str] = &[
+    "crates/transport",
+    "crates/import",
+    "crates/cli",
+    "crates/gltf",
+    "crates/usd",
+    "crates/bilux",
+    "crates/scene",
+];
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let is_loose = |path: &str| {

@@ -7,7 +7,6 @@
 //! arrives along `wi` at a surface with the normal n_shade scatters by f·|wi·n_shade|. For a path from a light to carry
 //! the same light between the same directions, importance that arrives along `wo` leaves along `wi` by
 //! f·|wo·n_shade|·|wi·n_geom| / |wo·n_geom|. [Veach 1997, 5.3]
-
 mod albedo;
 mod bent;
 mod coated_dielectric;
@@ -38,6 +37,7 @@ mod smooth_lobe;
 mod splitting;
 mod thin_film;
 mod transport_mode;
+pub mod wavelength;
 
 pub use albedo::{Albedo, AlbedoTable};
 pub use bent::faces_away;

@@ -1,7 +1,7 @@
 //! A [`Bsdf`] for light of one wavelength.
 
 use super::Bsdf;
-use crate::wavelength::Wavelength;
+use crate::bsdf::wavelength::Wavelength;
 
 impl Bsdf {
     /// Sets the indices for light of one wavelength, where the outside has this refractive index rather than that of air.

@@ -6,7 +6,7 @@
 //! over the path stores their means over the channels' sensitivities. [Belcour 2017; Born 1999, 7.6]
 
 use super::{Fresnel, fresnel_dielectric};
-use crate::wavelength::sensitivity;
+use crate::bsdf::wavelength::sensitivity;
 use bilux_math::Rgb;
 use bilux_math::transcendental::cos;
 use std::f32::consts::TAU;

@@ -1,10 +1,10 @@
 //! Parts that earlier builds of a scene leave for the next one.
 
-use crate::error::SceneError;
 use crate::geometry::{TreeWork, Trees};
 use crate::kept::{Kept, MeshPool, SpecKey};
 use crate::lights::{self, BuiltLight};
 use crate::materials::{self, Material, MaterialInputs};
+use crate::messages::error::SceneError;
 use crate::parameters::Spec;
 use crate::scene::{MeshLights, Top};
 use crate::texture::Texture;

@@ -3,7 +3,7 @@
 
 use super::pose::{Pose, Poses};
 use super::{Camera, CameraConnection, CameraKeys, CameraMatrices, CameraSample, Pinhole, check_changes};
-use crate::error::SceneError;
+use crate::messages::error::SceneError;
 use crate::parameters::Reader;
 use bilux_accel::Ray;
 use bilux_math::glam::DMat3;

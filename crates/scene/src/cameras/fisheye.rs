@@ -5,7 +5,7 @@ use super::central;
 use super::perspective::{MIRRORED, vector};
 use super::pixels::Pixels;
 use super::radial::{Lens, Radial};
-use crate::error::SceneError;
+use crate::messages::error::SceneError;
 use crate::parameters::Reader;
 use bilux_math::DVec2;
 use bilux_math::registry::{Entry, Parameter, ParameterKind, choice};

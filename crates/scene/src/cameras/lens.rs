@@ -1,6 +1,6 @@
 //! A thin lens: what is out of focus, and what it looks like.
 
-use crate::error::SceneError;
+use crate::messages::error::SceneError;
 use crate::parameters::Reader;
 use bilux_math::Vec2;
 use bilux_math::registry::{Parameter, ParameterKind, integer};

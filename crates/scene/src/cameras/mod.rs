@@ -19,7 +19,7 @@ mod stereo;
 pub use pinhole::Pinhole;
 pub use sensor_points::{SensorPoint, SensorPoints};
 
-use crate::error::SceneError;
+use crate::messages::error::SceneError;
 use crate::parameters::{Parameters, Reader, Spec};
 use bilux_accel::Ray;
 use bilux_math::glam::Vec4;

@@ -4,7 +4,7 @@ use super::CameraEntry;
 use super::central::{self, Projection};
 use super::perspective::{MIRRORED, vector};
 use super::stereo;
-use crate::error::SceneError;
+use crate::messages::error::SceneError;
 use crate::parameters::Reader;
 use bilux_math::registry::{Entry, Parameter, ParameterKind, choice};
 use bilux_math::transcendental::{asin_f64, atan2_f64, sin_cos_f64, tan_f64};

@@ -7,7 +7,7 @@ use super::{
     Camera, CameraConnection, CameraEntry, CameraKeys, CameraMatrices, CameraSample, Pinhole, around,
     check_changes, look, without_axes,
 };
-use crate::error::SceneError;
+use crate::messages::error::SceneError;
 use crate::parameters::Reader;
 use bilux_accel::Ray;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};

@@ -1,7 +1,7 @@
 //! Position and orientation of a camera, in double precision.
 
 use super::{CameraKeys, around, without_axes};
-use crate::error::SceneError;
+use crate::messages::error::SceneError;
 use crate::parameters::Reader;
 use bilux_math::DVec3;
 

@@ -1,7 +1,7 @@
 //! Two eyes: a pair of pictures beside or above each other, or one of them.
 
 use super::{Camera, CameraConnection, CameraKeys, CameraMatrices, CameraSample};
-use crate::error::SceneError;
+use crate::messages::error::SceneError;
 use bilux_accel::Ray;
 use bilux_math::registry::{Parameter, ParameterKind, choice};
 use bilux_math::{DVec2, DVec3, Vec2, Vec3};

@@ -27,7 +27,7 @@ pub mod vessel;
 pub use copies::copies;
 
 use crate::builder::SceneBuilder;
-use crate::error::SceneError;
+use crate::messages::error::SceneError;
 use crate::parameters::{Reader, Spec};
 use bilux_math::registry::{Entry, Parameter, ParameterKind, choice, integer};
 

@@ -1,9 +1,9 @@
 //! Trees over single objects in world space, and how trees of triangles are built.
 
-use crate::accel_choice::AccelChoice;
-use crate::error::SceneError;
+use crate::geometry::accel_choice::AccelChoice;
 use crate::kept::{Kept, Place, Same};
 use crate::mesh::Mesh;
+use crate::messages::error::SceneError;
 use crate::parameters::Span;
 use bilux_accel::{Accelerator, TriangleMesh};
 use std::sync::Arc;

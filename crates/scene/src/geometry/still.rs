@@ -4,9 +4,9 @@
 //! keep theirs: the answers are those of one tree (see [`Forest`]).
 
 use super::object_trees::{ObjectTrees, StillKey, TreeWork, failed, tree};
-use crate::accel_choice::AccelChoice;
-use crate::corners::world_corners;
-use crate::error::SceneError;
+use crate::geometry::accel_choice::AccelChoice;
+use crate::geometry::corners::world_corners;
+use crate::messages::error::SceneError;
 use bilux_accel::{Accelerator, Forest, TriangleMesh};
 use std::collections::HashMap;
 use std::ops::Range;

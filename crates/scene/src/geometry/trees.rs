@@ -2,13 +2,13 @@
 
 use super::object_trees::{ObjectTrees, TreeWork, failed, tree};
 use super::still::Still;
-use crate::accel_choice::AccelChoice;
-use crate::error::SceneError;
+use crate::geometry::accel_choice::AccelChoice;
+use crate::geometry::placed::Placed;
+use crate::geometry::spheres::{PlacedSphere, SphereTree, Spheres};
+use crate::geometry::strokes::{StrokeWidths, Strokes, mean_scale};
 use crate::kept::{Kept, Place, Same};
 use crate::mesh::Mesh;
-use crate::placed::Placed;
-use crate::spheres::{PlacedSphere, SphereTree, Spheres};
-use crate::strokes::{StrokeWidths, Strokes, mean_scale};
+use crate::messages::error::SceneError;
 use bilux_accel::primitives::PrimitiveTree;
 use bilux_accel::{Accelerator, BuildOptions, TriangleMesh};
 use bilux_math::motion::Motion;
@@ -98,7 +98,8 @@ impl Trees {
     ) -> Result<Arc<dyn Accelerator>, SceneError> {
         let work = &mut self.of_objects.work;
         self.of_meshes.or_make(Same(mesh.clone()), || {
-            let corners = crate::corners::world_corners(mesh, &bilux_math::Transform::IDENTITY).collect();
+            let corners =
+                crate::geometry::corners::world_corners(mesh, &bilux_math::Transform::IDENTITY).collect();
             let mesh = TriangleMesh::from_corners(corners).map_err(|e| failed(&e))?;
             tree(Arc::new(mesh), accel, work)
         })

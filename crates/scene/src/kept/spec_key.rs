@@ -2,7 +2,7 @@
 
 use super::Same;
 use crate::grid::Grid;
-use crate::intensity_distribution::IntensityDistribution;
+use crate::parameters::intensity_distribution::IntensityDistribution;
 use crate::parameters::{Spec, Value};
 use crate::texture::Texture;
 use std::sync::Arc;

@@ -7,7 +7,7 @@ use super::{
     LightTracing, colour, given_classic, vector,
 };
 use crate::classic::ClassicLight;
-use crate::error::SceneError;
+use crate::messages::error::SceneError;
 use crate::surface::Surface;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Aabb, Rgb, Vec2, Vec3};

@@ -1,6 +1,6 @@
 //! Light that leaves a light source.
 
-use crate::light_sample::cos_at;
+use crate::surface::light_sample::cos_at;
 use crate::surface::{leaving, offset_origin};
 use bilux_accel::{Primitive, Ray};
 use bilux_math::{Rgb, Vec3};

@@ -4,7 +4,7 @@ use super::distant::{Across, disc_pdf_area, ray};
 use super::environment_map::EnvironmentMap;
 use super::{BuiltLight, ClassicLighting, EmissionSample, Light, LightEntry, LightSample, LightTracing};
 use crate::classic::ClassicLight;
-use crate::error::SceneError;
+use crate::messages::error::SceneError;
 use crate::surface::Surface;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Aabb, Rgb, Vec2, Vec3, warp};

@@ -2,8 +2,8 @@
 
 use super::{Beam, EmissionSample, LightExtent, distant};
 use crate::classic::ClassicLight;
-use crate::light_sample::LightSample;
 use crate::surface::Surface;
+use crate::surface::light_sample::LightSample;
 use bilux_math::{Aabb, Rgb, Vec2, Vec3, warp};
 use std::any::Any;
 

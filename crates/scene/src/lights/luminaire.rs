@@ -6,9 +6,9 @@ use super::{
     LightSample, LightTracing, given_classic, vector,
 };
 use crate::classic::ClassicLight;
-use crate::error::SceneError;
-use crate::intensity_distribution::{Band, Goniometer, IntensityDistribution};
+use crate::messages::error::SceneError;
 use crate::parameters::Reader;
+use crate::parameters::intensity_distribution::{Band, Goniometer, IntensityDistribution};
 use crate::surface::Surface;
 use bilux_math::photometry::LUMENS_PER_WATT;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};

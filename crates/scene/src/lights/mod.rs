@@ -33,8 +33,8 @@ mod spot;
 mod sun;
 mod tree;
 
-pub use crate::light_sample::LightSample;
-pub use crate::sides::Sides;
+pub use crate::mesh::sides::Sides;
+pub use crate::surface::light_sample::LightSample;
 pub use beam::Beam;
 pub use cumulative::CumulativePart;
 pub use emission_sample::EmissionSample;
@@ -48,8 +48,8 @@ pub use pieces::Piece;
 pub use sphere::SphereLight;
 pub use tree::LightTree;
 
-use crate::error::SceneError;
 use crate::mesh::Mesh;
+use crate::messages::error::SceneError;
 use crate::parameters::{Measure, Quantity, Reader, Spec, Value};
 use crate::texture::Texture;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};

@@ -1,8 +1,8 @@
 //! `rect`: a flat, visible panel that emits light and casts soft shadows.
 
 use super::{BuiltLight, CLASSIC, GROUP, LightEntry, Sides, colour, given_classic, vector};
-use crate::error::SceneError;
 use crate::mesh::Mesh;
+use crate::messages::error::SceneError;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec2};
 use std::f32::consts::PI;

@@ -8,8 +8,8 @@ use super::{
     LightTracing, colour, given_classic, vector,
 };
 use crate::classic::ClassicLight;
-use crate::error::SceneError;
-use crate::spheres::PlacedSphere;
+use crate::geometry::spheres::PlacedSphere;
+use crate::messages::error::SceneError;
 use crate::surface::Surface;
 use bilux_accel::{Primitive, Ray};
 use bilux_math::registry::{Entry, Parameter, ParameterKind};

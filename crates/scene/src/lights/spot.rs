@@ -5,7 +5,7 @@ use super::{
     LightExtent, LightSample, LightTracing, colour, given_classic, vector,
 };
 use crate::classic::ClassicLight;
-use crate::error::SceneError;
+use crate::messages::error::SceneError;
 use crate::parameters::Reader;
 use crate::surface::Surface;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};

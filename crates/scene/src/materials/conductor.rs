@@ -8,7 +8,7 @@ use super::{
 };
 use crate::bsdf::{Bsdf, Conductor, Fresnel, Lobe};
 use crate::classic::ClassicMaterial;
-use crate::error::SceneError;
+use crate::messages::error::SceneError;
 use crate::parameters::{Reader, Spec};
 use crate::surface::Surface;
 use crate::texture::ColourMap;

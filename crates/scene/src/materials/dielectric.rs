@@ -9,8 +9,8 @@ use super::{
 };
 use crate::bsdf::{Bsdf, RoughDielectric, SmoothLobe};
 use crate::classic::ClassicMaterial;
-use crate::error::SceneError;
 use crate::media::{DIAMETER, DRAINE_ALPHA, Medium, PHASE, PHASE_ANISOTROPY, SCATTERING};
+use crate::messages::error::SceneError;
 use crate::parameters::{Spec, Value};
 use crate::surface::Surface;
 use crate::texture::{ColourMap, NumberMap};

@@ -1,9 +1,9 @@
 //! Emission of surfaces.
 
 use super::{MaterialInputs, texture};
-use crate::error::SceneError;
+use crate::mesh::sides::Sides;
+use crate::messages::error::SceneError;
 use crate::parameters::Reader;
-use crate::sides::Sides;
 use crate::texture::{ColourMap, Texture};
 use bilux_math::Rgb;
 use bilux_math::registry::{Parameter, ParameterKind};

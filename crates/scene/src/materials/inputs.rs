@@ -1,6 +1,6 @@
 //! Inputs of a material, besides its own parameters.
 
-use crate::error::SceneError;
+use crate::messages::error::SceneError;
 use crate::parameters::{Reader, Spec};
 use crate::texture::{ColourMap, NumberMap, Texture};
 use std::sync::Arc;

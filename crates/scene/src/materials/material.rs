@@ -1,12 +1,12 @@
 //! Interface of a material.
 
+use crate::bsdf::wavelength::Wavelength;
 use crate::bsdf::{Bsdf, OpaqueBaseInputs, SmoothLobe};
 use crate::classic::ClassicMaterial;
 use crate::media::Medium;
-use crate::sides::Sides;
+use crate::mesh::sides::Sides;
 use crate::surface::Surface;
 use crate::texture::{ColourMap, NumberMap};
-use crate::wavelength::Wavelength;
 use bilux_math::{Rgb, Vec3};
 
 /// The material of a surface.

@@ -3,10 +3,10 @@
 use super::{Material, MaterialEntry, MaterialInputs, NORMAL, NORMAL_SCALE, Nested, OPACITY, number_map};
 use crate::bsdf::{Bsdf, MAX_LOBES};
 use crate::classic::ClassicMaterial;
-use crate::error::SceneError;
 use crate::media::Medium;
+use crate::mesh::sides::Sides;
+use crate::messages::error::SceneError;
 use crate::parameters::Reader;
-use crate::sides::Sides;
 use crate::surface::Surface;
 use crate::texture::NumberMap;
 use bilux_math::Rgb;

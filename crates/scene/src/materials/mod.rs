@@ -40,7 +40,7 @@ mod translucent;
 mod visible;
 
 use crate::bsdf::MAX_LOBES;
-use crate::error::SceneError;
+use crate::messages::error::SceneError;
 use crate::parameters::{Reader, Span, Spec};
 pub use as_principled::{AsPrincipled, SHARED};
 use bilux_math::Rgb;

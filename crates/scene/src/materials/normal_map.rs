@@ -2,7 +2,7 @@
 //! (tangent space as in OpenGL and glTF: green is up).
 
 use super::{MaterialInputs, texture};
-use crate::error::SceneError;
+use crate::messages::error::SceneError;
 use crate::parameters::Reader;
 use crate::surface::Surface;
 use crate::texture::{AT_ONCE, LookUps, Texture};

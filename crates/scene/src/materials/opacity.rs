@@ -5,7 +5,7 @@
 //! ends of a path. See [`crate::Tracer`].
 
 use super::{MaterialInputs, number_map};
-use crate::error::SceneError;
+use crate::messages::error::SceneError;
 use crate::parameters::Reader;
 use crate::texture::NumberMap;
 use bilux_math::registry::{Parameter, ParameterKind};

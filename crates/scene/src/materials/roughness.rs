@@ -2,7 +2,7 @@
 
 use super::{MaterialInputs, number_map};
 use crate::bsdf::{Beckmann, Facets, Ggx};
-use crate::error::SceneError;
+use crate::messages::error::SceneError;
 use crate::parameters::Reader;
 use crate::surface::Surface;
 use crate::texture::NumberMap;

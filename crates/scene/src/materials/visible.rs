@@ -4,7 +4,7 @@
 //! wall. Light has no such rule. So only the camera sees through such back faces. They still block light, cast shadows
 //! and appear in mirrors. See [`crate::Tracer`].
 
-use crate::sides::Sides;
+use crate::mesh::sides::Sides;
 use bilux_math::registry::{Parameter, ParameterKind};
 
 /// Shared by materials that light does not enter.

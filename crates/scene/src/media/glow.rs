@@ -3,9 +3,9 @@
 //! What absorbs light emits it, as Kirchhoff's law says: the absorption coefficient times a radiance. It is that of the medium
 //! where nobody sees through it, and a small part of it where it is thin.
 
+use crate::bsdf::wavelength::{black_body, black_body_of_peak_one};
 use crate::grid::{Grid, GridLine};
 use crate::parameters::Reader;
-use crate::wavelength::{black_body, black_body_of_peak_one};
 use bilux_math::registry::{Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec3};
 use std::sync::Arc;

@@ -2,8 +2,8 @@
 
 use super::glow::{Glow, GlowLine};
 use super::phases::{HenyeyGreenstein, Phase, read_phase};
-use crate::error::SceneError;
 use crate::grid::{Grid, GridLine};
+use crate::messages::error::SceneError;
 use crate::parameters::Reader;
 use bilux_math::registry::{Parameter, ParameterKind};
 use bilux_math::transcendental::{exp, ln};

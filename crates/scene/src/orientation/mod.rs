@@ -6,7 +6,7 @@ use crate::builder::SceneBuilder;
 use bilux_math::DMat3;
 use shape::Shape;
 
-pub use crate::axis::{Axis, UpHint};
+pub use crate::geometry::axis::{Axis, UpHint};
 
 /// The orientation of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

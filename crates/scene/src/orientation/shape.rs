@@ -1,7 +1,7 @@
 //! Orientation from shape: a hand-made score that distinguishes 105 public models; see `docs/adr/0029-up-and-front.md`.
 
-use crate::axis::Axis;
 use crate::builder::SceneBuilder;
+use crate::geometry::axis::Axis;
 use bilux_math::DVec3;
 
 /// A point of a surface with its unit normal, or zero if it has none, and its area.

@@ -1,7 +1,7 @@
 //! Quantities of light as text, in photometric or radiometric units: `800 lm`, `2000 nit`, `6500 K`, `800 lm 2700 K`.
 
-use crate::error::nearest_name;
-use crate::wavelength::black_body;
+use crate::bsdf::wavelength::black_body;
+use crate::messages::error::nearest_name;
 use bilux_math::Rgb;
 use bilux_math::colour::srgb_decode;
 use bilux_math::photometry::LUMENS_PER_WATT;

@@ -1,7 +1,7 @@
 //! Values in scene files.
 
 use crate::grid::Grid;
-use crate::intensity_distribution::IntensityDistribution;
+use crate::parameters::intensity_distribution::IntensityDistribution;
 use bilux_math::{Rgb, Vec3};
 use std::sync::Arc;
 

@@ -8,7 +8,7 @@
 use super::{PresetEntry, affine, move_all, set_all};
 use crate::builder::SceneBuilder;
 use crate::cameras::CameraSpec;
-use crate::error::SceneError;
+use crate::messages::error::SceneError;
 use crate::parameters::{Spec, Value};
 use bilux_math::registry::Entry;
 use bilux_math::transcendental::tan_f64;

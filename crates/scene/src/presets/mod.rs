@@ -17,7 +17,7 @@ pub use studio::{
 };
 
 use crate::builder::SceneBuilder;
-use crate::error::SceneError;
+use crate::messages::error::SceneError;
 use crate::parameters::{Span, Value};
 use bilux_math::registry::Entry;
 use bilux_math::{DMat3, DMat4, DVec3, Motion, Transform};

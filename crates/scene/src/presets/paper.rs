@@ -5,7 +5,7 @@
 use super::{PresetEntry, affine, course, move_all, set_all};
 use crate::builder::SceneBuilder;
 use crate::cameras::CameraSpec;
-use crate::error::SceneError;
+use crate::messages::error::SceneError;
 use crate::parameters::{Spec, Value};
 use bilux_math::registry::Entry;
 use bilux_math::{DMat3, DVec3, Vec3};

@@ -2,7 +2,7 @@
 
 use crate::builder::SceneBuilder;
 use crate::cameras;
-use crate::strokes::StrokeWidths;
+use crate::geometry::strokes::StrokeWidths;
 use bilux_math::Vec3;
 
 /// The number of vertices that are sampled.

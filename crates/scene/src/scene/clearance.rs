@@ -1,9 +1,9 @@
 //! Distance of points of a dense medium from the surfaces around: a ball of less than this radius is all medium.
 
-use crate::corners::world_corners;
 use crate::geometry::Geometry;
+use crate::geometry::corners::world_corners;
+use crate::geometry::placed::Placed;
 use crate::materials::Material;
-use crate::placed::Placed;
 use bilux_accel::registry::Quality;
 use bilux_accel::{BuildOptions, Bvh8, TriangleMesh};
 use bilux_math::{Aabb, Vec3};

@@ -1,7 +1,7 @@
 //! Which glass touches other glass: faces that lie on each other are one surface, between what is on both sides.
 
+use crate::geometry::placed::Placed;
 use crate::materials::Material;
-use crate::placed::Placed;
 use bilux_math::hash::mix64;
 use bilux_math::{Aabb, Transform, Vec3};
 use std::sync::Arc;

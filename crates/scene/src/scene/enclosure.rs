@@ -4,8 +4,8 @@ use super::may_pass::MayPass;
 use super::nesting::Nesting;
 use super::scene_light::SceneLight;
 use crate::geometry::Geometry;
+use crate::geometry::placed::Placed;
 use crate::materials::{Material, Nested};
-use crate::placed::Placed;
 use bilux_math::{Aabb, Transform, Vec3};
 use std::sync::Arc;
 

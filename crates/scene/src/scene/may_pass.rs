@@ -1,10 +1,10 @@
 //! Objects that may let rays pass.
 
 use crate::geometry::Geometry;
+use crate::geometry::placed::{Placed, Visibility};
 use crate::materials::Material;
 use crate::mesh::Mesh;
-use crate::placed::{Placed, Visibility};
-use crate::sides::Sides;
+use crate::mesh::sides::Sides;
 use std::sync::Arc;
 
 /// Which rays an object may let pass.

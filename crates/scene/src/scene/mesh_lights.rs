@@ -1,7 +1,7 @@
 //! The lights of emissive objects, kept from one build to the next.
 
-use crate::corners::corner_uvs;
 use crate::geometry::Geometry;
+use crate::geometry::corners::corner_uvs;
 use crate::kept::{Kept, Place, Same};
 use crate::lights::{MeshLight, Picture, SurfaceEmission};
 use crate::materials::Material;

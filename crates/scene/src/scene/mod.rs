@@ -17,14 +17,14 @@ mod still_triangles;
 mod top;
 mod tracer;
 
-use crate::accel_choice::AccelChoice;
 use crate::cameras::Camera;
-use crate::footprint::FootprintView;
 use crate::geometry::Geometry;
+use crate::geometry::accel_choice::AccelChoice;
+use crate::geometry::footprint::FootprintView;
+use crate::geometry::placed::Placed;
 use crate::lights::Light;
 use crate::materials::Material;
 use crate::media::{Medium, MediumLine};
-use crate::placed::Placed;
 use crate::surface::Surface;
 use crate::texture::mipmaps;
 use bilux_accel::instancing::TwoLevel;
@@ -329,7 +329,7 @@ impl Scene {
     ///
     /// `next` finds the closest hit of a ray.
     #[inline]
-    pub(super) fn behind_shells(&self, ray: &Ray, hit: Hit, next: impl FnMut(&Ray) -> Option<Hit>) -> Hit {
+    pub(crate) fn behind_shells(&self, ray: &Ray, hit: Hit, next: impl FnMut(&Ray) -> Option<Hit>) -> Hit {
         match &self.sheets {
             Some(sheets) => self.parts.behind(sheets, ray, hit, next).unwrap_or(hit),
             None => hit,

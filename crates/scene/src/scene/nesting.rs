@@ -2,8 +2,8 @@
 
 use super::contact::touching;
 use super::open_boundaries::OpenBoundaries;
+use crate::geometry::placed::Placed;
 use crate::materials::Material;
-use crate::placed::Placed;
 use bilux_math::{Aabb, Vec3};
 use std::cmp::Reverse;
 use std::sync::Arc;

@@ -3,8 +3,8 @@
 //! A path that has crossed such a boundary knows where it is. One that begins behind it may never meet it, so it asks from where it
 //! begins: the side of the boundary that is seen from there decides, whatever the path's own direction.
 
+use crate::geometry::placed::Placed;
 use crate::materials::Material;
-use crate::placed::Placed;
 use bilux_math::{DVec3, Vec3};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;

@@ -1,8 +1,8 @@
 //! Which surfaces integrators shade many at a time.
 
 use crate::bsdf::SmoothLobe;
+use crate::geometry::placed::Placed;
 use crate::materials::Material;
-use crate::placed::Placed;
 use bilux_math::Rgb;
 use std::sync::Arc;
 

@@ -6,7 +6,7 @@
 //! end it is traced from. See docs/adr/0023-shells.md.
 
 use super::parts::SceneParts;
-use crate::placed::Placed;
+use crate::geometry::placed::Placed;
 use crate::surface::Surface;
 use bilux_accel::{Accelerator, Hit, Primitive, Query, Ray};
 use bilux_math::parallel::any;

@@ -2,7 +2,7 @@
 
 use super::parts::SceneParts;
 use super::sheets::Sheets;
-use crate::accel_choice::AccelChoice;
+use crate::geometry::accel_choice::AccelChoice;
 use crate::kept::Place;
 use bilux_accel::Instance;
 use bilux_accel::instancing::TwoLevel;

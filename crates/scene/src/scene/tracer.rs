@@ -4,7 +4,7 @@ use super::open_boundaries::Behind;
 use super::sheets::{End, Sheets};
 use super::{MayPass, Scene, SceneParts};
 use crate::bsdf::OpaqueBaseInputs;
-use crate::sides::Sides;
+use crate::mesh::sides::Sides;
 use crate::surface::Surface;
 use bilux_accel::{Accelerator, Counters, Hit, Primitive, Query, Ray};
 use bilux_math::Vec3;

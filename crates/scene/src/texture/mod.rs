@@ -1,9 +1,9 @@
 //! Textures on surfaces: images and procedural textures.
-
 mod channel;
 mod image;
 mod levels;
 pub(crate) mod mipmaps;
+pub(crate) mod octaves;
 mod procedural;
 mod sampling;
 mod together;

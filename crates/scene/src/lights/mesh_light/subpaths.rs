@@ -1,7 +1,7 @@
 //! The light subpaths that begin at emissive meshes: on pieces as often as they are bright.
 
 use super::{MeshLight, finite};
-use crate::corners::transform_with_error;
+use crate::geometry::corners::transform_with_error;
 use crate::lights::light_triangle::{LightTriangle, blend};
 use crate::lights::{EmissionSample, LightTracing, Sides};
 use crate::surface::{Surface, gamma};

@@ -2,8 +2,8 @@
 
 use super::maps::{Maps, is_there};
 use super::point::{Point, Subsurface, weakened};
-use crate::error::SceneError;
 use crate::media::{HenyeyGreenstein, Medium, Phase, slab};
+use crate::messages::error::SceneError;
 use crate::parameters::Reader;
 use crate::texture::{ColourMap, NumberMap, Patch};
 use bilux_math::Rgb;

@@ -4,7 +4,7 @@ use super::super::normal_map::{self, NormalMap};
 use super::super::{MaterialInputs, colour_map, number_map};
 use super::point::{Point, Subsurface};
 use crate::bsdf::{OpaqueBaseInputs, ThinFilm, is_rough};
-use crate::error::SceneError;
+use crate::messages::error::SceneError;
 use crate::parameters::Reader;
 use crate::surface::Surface;
 use crate::texture::{AT_ONCE, ColourMap, LookUps, NumberMap, Patch, Seen};

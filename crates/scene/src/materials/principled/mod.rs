@@ -16,8 +16,8 @@ use super::{
 };
 use crate::bsdf::{Bsdf, Lobe, OpaqueBase, OpaqueBaseInputs, is_rough};
 use crate::classic::ClassicMaterial;
-use crate::error::SceneError;
 use crate::media::Medium;
+use crate::messages::error::SceneError;
 use crate::surface::Surface;
 use crate::texture::NumberMap;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};

@@ -1,7 +1,7 @@
 //! A density that is a formula, one of [`DENSITIES`], and the grid of its values.
 
-use crate::error::SceneError;
 use crate::grid::{BLOCK, BLOCK_VOXELS, Grid, GridError, MAX_SIDE, Origin};
+use crate::messages::error::SceneError;
 use crate::parameters::{Reader, Spec};
 use bilux_math::parallel::for_each;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};

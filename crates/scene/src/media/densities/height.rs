@@ -2,7 +2,7 @@
 
 use super::density::{FROM, RESOLUTION, TO};
 use super::{Density, DensityEntry};
-use crate::axis::Axis;
+use crate::geometry::axis::Axis;
 use bilux_math::Vec3;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::transcendental::exp;

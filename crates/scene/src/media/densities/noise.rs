@@ -3,8 +3,8 @@
 use super::density::{FROM, RESOLUTION, TO};
 use super::gradient_noise;
 use super::{Density, DensityEntry};
-use crate::error::SceneError;
-use crate::octaves::{ROUGHNESS, SEED, weights};
+use crate::messages::error::SceneError;
+use crate::texture::octaves::{ROUGHNESS, SEED, weights};
 use bilux_math::Vec3;
 use bilux_math::hash::hash_words;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};

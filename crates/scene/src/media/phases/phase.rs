@@ -2,7 +2,7 @@
 
 use super::phase_parameters::{ANISOTROPY, DIAMETER, DRAINE_ALPHA, KIND};
 use super::{Draine, Droplets, HenyeyGreenstein, Rayleigh};
-use crate::error::SceneError;
+use crate::messages::error::SceneError;
 use crate::parameters::Reader;
 use bilux_math::registry::Entry;
 use bilux_math::transcendental::sin_cos;

@@ -9,7 +9,7 @@ mod standing;
 use super::PresetEntry;
 use crate::builder::{Object, SceneBuilder};
 use crate::cameras::{self, CameraSample};
-use crate::error::SceneError;
+use crate::messages::error::SceneError;
 use crate::orientation::Orientation;
 use crate::parameters::{Spec, Value};
 use bilux_math::registry::Entry;

@@ -1,6 +1,6 @@
 //! Options of the studio.
 
-use crate::axis::Axis;
+use crate::geometry::axis::Axis;
 
 /// The ground below a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,8 +2,8 @@
 
 use super::place::{U_OFFSET, UvPlacement, V_OFFSET, u_scale, v_scale};
 use super::{Pattern, TextureEntry, tone};
-use crate::octaves::{ROUGHNESS, SEED, weights};
 use crate::texture::ColourMap;
+use crate::texture::octaves::{ROUGHNESS, SEED, weights};
 use bilux_math::hash::hash_words;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::transcendental::{cos, sin};

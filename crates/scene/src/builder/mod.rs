@@ -1,26 +1,27 @@
 //! A scene under construction: plain data, as files describe it.
-
 mod built_parts;
+pub mod change;
+pub mod inventory;
 mod merging;
 
-use crate::accel_choice::AccelChoice;
-use crate::axis::UpHint;
+use crate::builder::inventory::Inventory;
 use crate::cameras::{self, CameraSpec};
-use crate::error::{SceneError, Warning};
-use crate::footprint;
+use crate::geometry::accel_choice::AccelChoice;
+use crate::geometry::axis::UpHint;
+use crate::geometry::footprint;
+use crate::geometry::placed::Visibility;
+use crate::geometry::spheres::PlacedSphere;
+use crate::geometry::strokes::StrokeWidths;
 use crate::geometry::{Geometry, Placed};
 use crate::grid::Grid;
-use crate::inventory::Inventory;
 use crate::kept::MeshPool;
 use crate::lights::{self, BuiltLight};
 use crate::materials::{Material, MaterialInputs};
 use crate::mesh::Mesh;
+use crate::mesh::sides::Sides;
+use crate::messages::error::{SceneError, Warning};
 use crate::parameters::{Parameters, Span, Spec, Value};
-use crate::placed::Visibility;
 use crate::scene::{LightSurfaces, MAX_NESTED, Scene, SceneLight, SceneParts};
-use crate::sides::Sides;
-use crate::spheres::PlacedSphere;
-use crate::strokes::StrokeWidths;
 use crate::texture::Texture;
 use bilux_math::motion::Motion;
 use bilux_math::{DVec3, Rgb, Transform};

@@ -1,6 +1,5 @@
 //! Shading in the classic modes (`cast`, `whitted`, `cook`). Equations 1 and 2 of the paper are not BSDFs, so materials
 //! and lights describe themselves in terms of that older model too.
-
 use bilux_math::{Rgb, Vec3};
 
 /// A surface under Equations 1 and 2.

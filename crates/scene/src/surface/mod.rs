@@ -1,7 +1,7 @@
 //! A point on a surface, for materials, lights and integrators.
-
+pub(crate) mod light_sample;
 use crate::classic::ClassicLight;
-use crate::light_sample::LightSample;
+use crate::surface::light_sample::LightSample;
 use crate::texture::{Patch, UvPair};
 use bilux_accel::{Primitive, Ray};
 use bilux_math::{Rgb, Vec2, Vec3};

@@ -1,12 +1,12 @@
 //! Parameters as written in scene files, and how a row of a table reads them.
-
+pub(crate) mod intensity_distribution;
 mod quantity;
 mod value;
 
-use crate::error::{SceneError, nearest_name};
 use crate::grid::Grid;
-use crate::intensity_distribution::IntensityDistribution;
-pub use crate::span::Span;
+use crate::messages::error::{SceneError, nearest_name};
+pub use crate::messages::span::Span;
+use crate::parameters::intensity_distribution::IntensityDistribution;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{DVec3, Rgb, Vec3};
 pub use quantity::units_of;

@@ -4,8 +4,8 @@
 //! the camera and the image's size, never of a path. So a surface looks the same from both ends of any path.
 
 use crate::cameras::Camera;
-use crate::corners::triangle_uvs;
 use crate::geometry::Geometry;
+use crate::geometry::corners::triangle_uvs;
 use crate::mesh::Mesh;
 use crate::parameters::{Spec, Value};
 use crate::surface::Surface;

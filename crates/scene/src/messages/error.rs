@@ -1,6 +1,6 @@
 //! Errors and warnings of a scene.
 
-use crate::span::Span;
+use crate::messages::span::Span;
 
 /// Why a scene cannot be built. Every message says what is wrong, where, and what to do.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

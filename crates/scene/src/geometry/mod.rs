@@ -1,21 +1,27 @@
 //! The surfaces of a scene: static triangles in one tree of the whole scene, moving or instanced ones in trees of their
 //! own, points and lines in separate trees, and spheres in a last one.
-
+pub(crate) mod accel_choice;
+pub(crate) mod axis;
+pub(crate) mod corners;
 mod corners_in_world;
+pub(crate) mod footprint;
 mod moved;
 mod object_trees;
+pub(crate) mod placed;
+pub mod spheres;
 mod still;
 mod still_triangles;
+pub mod strokes;
 mod surface_point;
 mod trees;
 
-use crate::accel_choice::AccelChoice;
-use crate::corners::{tangents, transform_with_error, triangle_uvs, uv_pairs, world_corners};
-use crate::error::SceneError;
+use crate::geometry::accel_choice::AccelChoice;
+use crate::geometry::corners::{tangents, transform_with_error, triangle_uvs, uv_pairs, world_corners};
+pub use crate::geometry::placed::Placed;
+use crate::geometry::spheres::{PlacedSphere, Spheres};
+use crate::geometry::strokes::{StrokeWidths, Strokes};
 use crate::kept::{Place, Same};
-pub use crate::placed::Placed;
-use crate::spheres::{PlacedSphere, Spheres};
-use crate::strokes::{StrokeWidths, Strokes};
+use crate::messages::error::SceneError;
 use crate::surface::Surface;
 use crate::texture::UvPair;
 use bilux_accel::instancing::{Instance, TopLevel, TwoLevel};

@@ -2,9 +2,9 @@
 
 use crate::builder::SceneBuilder;
 use crate::cameras::CAMERAS;
-use crate::error::SceneError;
 use crate::lights::LIGHTS;
 use crate::materials::MATERIALS;
+use crate::messages::error::SceneError;
 use crate::parameters::{Reader, Span, Spec, Value};
 use bilux_math::registry::{Entry, ParameterKind};
 

@@ -1,7 +1,7 @@
 //! Points and lines of a mesh as they are rendered: spheres, and tubes with round ends, each intersected analytically,
 //! so that none of them costs a triangle.
 
-use crate::corners::transform_with_error;
+use crate::geometry::corners::transform_with_error;
 use crate::mesh::Mesh;
 use crate::surface::{Surface, gamma, unit_or};
 use bilux_accel::primitives::{Capsule, Crossing, PrimitiveTree, Primitives, Shape, Sphere};
