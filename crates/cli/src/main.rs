@@ -12,7 +12,7 @@ mod sandbox;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
-use commands::advice;
+use commands::shared::advice;
 use process::{allocator, memory, output, usage};
 use std::io::Write;
 use std::process::ExitCode;

@@ -1,10 +1,12 @@
 //! `bilux bench`: benchmarks.
 
-use super::{DONE, check_folder, read_options};
 use crate::arguments::measuring::{
     BenchKind, LoadBench, ModelsBench, RaysBench, RenderBench, Repeated, SpeedBench,
 };
 use crate::arguments::{Bench, Common};
+use crate::commands::DONE;
+use crate::commands::shared::checks::check_folder;
+use crate::commands::shared::reading::read_options;
 use crate::process::{output, usage};
 use anyhow::{Context, anyhow};
 use bilux::settings::{parse_size, size_error};

@@ -1,10 +1,14 @@
 //! `bilux denoise`: removes the noise from a picture.
 
-use super::pictures::{read_picture, with_main};
-use super::{DONE, check_folder, check_not_input, check_quality, warn_lost_alpha};
 use crate::arguments::values::Exposure;
 use crate::arguments::{Common, Denoise};
-use crate::commands::sandbox_paths::SandboxPaths;
+use crate::commands::DONE;
+use crate::commands::shared::checks::check_folder;
+use crate::commands::shared::checks::check_not_input;
+use crate::commands::shared::checks::check_quality;
+use crate::commands::shared::checks::warn_lost_alpha;
+use crate::commands::shared::pictures::{read_picture, with_main};
+use crate::commands::shared::sandbox_paths::SandboxPaths;
 use crate::process::{output, usage};
 use anyhow::Context;
 use bilux::pictures::denoise::{DenoiserChoice, Task, denoise, denoiser};
@@ -24,7 +28,7 @@ pub fn run(arguments: &Denoise, common: &Common) -> anyhow::Result<u8> {
     let tone_map = tone_map(&arguments.tonemap).context("--tonemap").map_err(usage::wrong)?;
     let threads = arguments.threads as usize;
     if arguments.by != "builtin" {
-        crate::commands::denoisers::load(threads, common);
+        crate::commands::render::denoisers::load(threads, common);
     }
     let task = Task { threads, sandboxed: common.sandbox, ..Task::default() };
     let chosen = denoiser(&arguments.by, &task).context("--by").map_err(usage::wrong)?;

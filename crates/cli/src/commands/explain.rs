@@ -1,10 +1,13 @@
 //! `bilux explain`: why a scene is slow or noisy, and what would help.
 
-use super::given::Given;
-use super::{DONE, check_choices, read_options_with, report_warnings};
 use crate::arguments::settings_from;
 use crate::arguments::{Common, Explain};
-use crate::commands::sandbox_paths::SandboxPaths;
+use crate::commands::DONE;
+use crate::commands::shared::given::Given;
+use crate::commands::shared::reading::check_choices;
+use crate::commands::shared::reading::read_options_with;
+use crate::commands::shared::reading::report_warnings;
+use crate::commands::shared::sandbox_paths::SandboxPaths;
 use crate::process::{output, usage};
 use bilux::explain::{Explanation, Measures, slower};
 use bilux::{Job, JobRequest};

@@ -1,9 +1,15 @@
 //! `bilux generate`: the built-in procedural scenes.
 
-use super::{DONE, check_folder, check_not_input, is_picture, load, read_options, report_warnings};
 use crate::arguments::assignments::{assignment_of, from_flag};
 use crate::arguments::{Common, Generate};
-use crate::commands::sandbox_paths::SandboxPaths;
+use crate::commands::DONE;
+use crate::commands::shared::checks::check_folder;
+use crate::commands::shared::checks::check_not_input;
+use crate::commands::shared::checks::is_picture;
+use crate::commands::shared::reading::load;
+use crate::commands::shared::reading::read_options;
+use crate::commands::shared::reading::report_warnings;
+use crate::commands::shared::sandbox_paths::SandboxPaths;
 use crate::process::usage;
 use anyhow::anyhow;
 use bilux::formats::WriteOptions;

@@ -1,9 +1,13 @@
 //! `bilux info`: what is in a scene.
 
-use super::given::Given;
-use super::{DONE, check_choices, read_options_with, report_notes, report_warnings};
 use crate::arguments::{Common, Info};
-use crate::commands::sandbox_paths::SandboxPaths;
+use crate::commands::DONE;
+use crate::commands::shared::given::Given;
+use crate::commands::shared::reading::check_choices;
+use crate::commands::shared::reading::read_options_with;
+use crate::commands::shared::reading::report_notes;
+use crate::commands::shared::reading::report_warnings;
+use crate::commands::shared::sandbox_paths::SandboxPaths;
 use crate::process::output::counted;
 use crate::process::{output, usage};
 use bilux::formats::ReadOptions;

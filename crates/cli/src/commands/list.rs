@@ -1,7 +1,7 @@
 //! `bilux list`: every table, as text or as JSON.
 
-use super::DONE;
 use crate::arguments::List;
+use crate::commands::DONE;
 use crate::process::{output, usage};
 use anyhow::anyhow;
 use bilux::math::registry::{Entry, Parameter, ParameterKind};

@@ -1,7 +1,7 @@
 //! Shell completions, man pages and licences, all generated from the binary's own descriptions.
 
-use super::DONE;
 use crate::arguments::Arguments;
+use crate::commands::DONE;
 use crate::process::output;
 use anyhow::Context;
 use clap::CommandFactory;

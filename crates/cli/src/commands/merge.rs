@@ -1,8 +1,11 @@
 //! `bilux merge`: merges partial renders into one picture.
 
-use super::{DONE, check_folder, check_not_input, warn_lost_alpha};
 use crate::arguments::{Common, Merge};
-use crate::commands::sandbox_paths::SandboxPaths;
+use crate::commands::DONE;
+use crate::commands::shared::checks::check_folder;
+use crate::commands::shared::checks::check_not_input;
+use crate::commands::shared::checks::warn_lost_alpha;
+use crate::commands::shared::sandbox_paths::SandboxPaths;
 use crate::process::{output, usage};
 use anyhow::{Context, bail};
 use bilux::Display;

@@ -1,10 +1,14 @@
 //! `bilux sensor`: what the sensor of a camera reads of a picture's light.
 
-use super::pictures::{read_picture, with_main};
-use super::{DONE, check_folder, check_not_input, check_quality, warn_lost_alpha};
 use crate::arguments::values::Exposure;
 use crate::arguments::{Common, Sensor};
-use crate::commands::sandbox_paths::SandboxPaths;
+use crate::commands::DONE;
+use crate::commands::shared::checks::check_folder;
+use crate::commands::shared::checks::check_not_input;
+use crate::commands::shared::checks::check_quality;
+use crate::commands::shared::checks::warn_lost_alpha;
+use crate::commands::shared::pictures::{read_picture, with_main};
+use crate::commands::shared::sandbox_paths::SandboxPaths;
 use crate::process::output::{counted, eprint};
 use crate::process::usage;
 use anyhow::Context;

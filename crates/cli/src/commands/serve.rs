@@ -1,13 +1,18 @@
 //! `bilux serve`: shows a scene in browsers while it is rendered.
 
-use super::{DONE, check_choices, load, read_options_with, report_notes, report_warnings};
 use crate::arguments::Common;
 use crate::arguments::choices::{Choices, GlassArgument, defined};
 use crate::arguments::serving::Serve;
 use crate::arguments::settings_from;
 use crate::arguments::studio::{StudioArguments, surround};
-use crate::commands::denoisers;
-use crate::commands::sandbox_paths::{SandboxPaths, folder_of};
+use crate::commands::DONE;
+use crate::commands::render::denoisers;
+use crate::commands::shared::reading::check_choices;
+use crate::commands::shared::reading::load;
+use crate::commands::shared::reading::read_options_with;
+use crate::commands::shared::reading::report_notes;
+use crate::commands::shared::reading::report_warnings;
+use crate::commands::shared::sandbox_paths::{SandboxPaths, folder_of};
 use crate::process::interrupt::interrupt;
 use crate::process::{output, usage};
 use anyhow::bail;

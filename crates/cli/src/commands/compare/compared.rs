@@ -1,7 +1,7 @@
 //! A pair of pictures, how they differ, and whether that is within bounds.
 
 use crate::arguments::{Common, Compare};
-use crate::commands::pictures::{read_picture, with_main};
+use crate::commands::shared::pictures::{read_picture, with_main};
 use crate::process::output;
 use bilux::pictures::metrics::{HeatMap, Pair, Report, heat_map};
 use bilux::pictures::{Limits, Picture, TONEMAPS};

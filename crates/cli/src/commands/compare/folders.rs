@@ -3,7 +3,8 @@
 use super::compared::{BEYOND, Compared, TROUBLE, as_json, broken_bounds};
 use super::page;
 use crate::arguments::{Common, Compare};
-use crate::commands::{DONE, is_picture};
+use crate::commands::DONE;
+use crate::commands::shared::checks::is_picture;
 use crate::process::output;
 use anyhow::{Context, bail};
 use bilux::pictures::Report;

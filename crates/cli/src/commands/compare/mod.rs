@@ -4,9 +4,11 @@ mod compared;
 mod folders;
 mod page;
 
-use super::{DONE, check_folder, check_not_input};
 use crate::arguments::{Common, Compare};
-use crate::commands::sandbox_paths::SandboxPaths;
+use crate::commands::DONE;
+use crate::commands::shared::checks::check_folder;
+use crate::commands::shared::checks::check_not_input;
+use crate::commands::shared::sandbox_paths::SandboxPaths;
 use crate::process::output;
 use anyhow::bail;
 use bilux::pictures::metrics::METRICS;

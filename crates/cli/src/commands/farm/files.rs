@@ -1,6 +1,6 @@
 //! The files of a job: the scene, what it names, and what options name, copied to where every node can read them.
 
-use crate::commands::sandbox_paths::folder_of;
+use crate::commands::shared::sandbox_paths::folder_of;
 use anyhow::{Context, bail};
 use std::collections::BTreeMap;
 use std::fs;

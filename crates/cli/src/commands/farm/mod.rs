@@ -9,11 +9,15 @@ mod shell;
 mod split;
 mod template;
 
-use super::{DONE, check_choices, load, read_options_with, report_warnings};
 use crate::arguments::farming::Farm;
 use crate::arguments::settings_from;
 use crate::arguments::{Common, Render};
-use crate::commands::sandbox_paths::SandboxPaths;
+use crate::commands::DONE;
+use crate::commands::shared::reading::check_choices;
+use crate::commands::shared::reading::load;
+use crate::commands::shared::reading::read_options_with;
+use crate::commands::shared::reading::report_warnings;
+use crate::commands::shared::sandbox_paths::SandboxPaths;
 use crate::process::{output, usage};
 use anyhow::{Context, bail};
 use bilux::Settings;

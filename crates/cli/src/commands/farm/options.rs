@@ -5,7 +5,7 @@ use super::farm_job::Word;
 use super::files::Files;
 use crate::arguments::farming::Farm;
 use crate::arguments::{Arguments, Command, Render};
-use crate::commands::aov;
+use crate::commands::render::aov;
 use anyhow::{Context, bail};
 use clap::Parser;
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! Whether the sandbox of a process fits another job: each sandbox that a process enters on top of another takes away what the
 //! new one does not have.
 
-use crate::commands::sandbox_paths::SandboxPaths;
+use crate::commands::shared::sandbox_paths::SandboxPaths;
 use std::path::{Path, PathBuf};
 
 /// Permissions that a process in a sandbox has, or that a job in one needs.

@@ -11,8 +11,8 @@ mod process;
 mod signals;
 mod warm;
 
-use super::DONE;
 use crate::arguments::{Common, Worker};
+use crate::commands::DONE;
 use crate::process::output;
 use job::{Job, Limits};
 use lines::Lines;

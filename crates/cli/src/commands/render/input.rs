@@ -1,9 +1,12 @@
 //! The scene that `bilux render` renders, and the jobs that it makes of it.
 
-use super::given::Given;
+use super::aov;
 use super::targets::{Target, is_stdout};
-use super::{aov, check_choices, read_options_with, report_warnings};
 use crate::arguments::{Common, Render};
+use crate::commands::shared::given::Given;
+use crate::commands::shared::reading::check_choices;
+use crate::commands::shared::reading::read_options_with;
+use crate::commands::shared::reading::report_warnings;
 use crate::process::interrupt::Interrupt;
 use crate::process::{output, usage};
 use anyhow::{Context, anyhow};

@@ -1,8 +1,8 @@
 //! `bilux render --watch`: renders again whenever a file of the scene changes.
 
-use super::DONE;
 use super::targets::{Target, is_stdout};
 use crate::arguments::{Common, Render};
+use crate::commands::DONE;
 use crate::process::interrupt::Interrupt;
 use crate::process::{output, usage};
 use anyhow::bail;

@@ -1,21 +1,29 @@
 //! `bilux convert`: converts between scene formats, and between picture formats.
 
-use super::given::Given;
-use super::pictures::with_main;
-use super::plan::Plan;
-use super::targets::is_stdout;
-use super::{
-    DONE, check_choices, check_folder, check_not_input, is_picture, outputs, read_options_with,
-    report_warnings, warn_lost_alpha,
-};
+pub(in crate::commands) mod contours;
+pub(in crate::commands) mod plan;
+
 use crate::arguments::streams::named;
 use crate::arguments::{Common, Convert};
-use crate::commands::sandbox_paths::SandboxPaths;
+use crate::commands::DONE;
+use crate::commands::render::targets::is_stdout;
+use crate::commands::shared::checks::check_folder;
+use crate::commands::shared::checks::check_not_input;
+use crate::commands::shared::checks::is_picture;
+use crate::commands::shared::checks::warn_lost_alpha;
+use crate::commands::shared::given::Given;
+use crate::commands::shared::outputs;
+use crate::commands::shared::pictures::with_main;
+use crate::commands::shared::reading::check_choices;
+use crate::commands::shared::reading::read_options_with;
+use crate::commands::shared::reading::report_warnings;
+use crate::commands::shared::sandbox_paths::SandboxPaths;
 use crate::process::usage;
 use anyhow::{anyhow, bail};
 use bilux::formats::check_not_read;
 use bilux::pictures::formats::WriteOptions;
 use bilux::pictures::{Limits, Picture, Source};
+use plan::Plan;
 use std::path::Path;
 
 pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {

@@ -1,6 +1,7 @@
 //! Destinations of pictures: files, or standard output, in any format.
 
-use super::{check_folder, check_quality};
+use super::checks::check_folder;
+use super::checks::check_quality;
 use crate::arguments::streams::{PNG, is_stdout, named};
 use crate::process::output;
 use anyhow::bail;

@@ -1,7 +1,7 @@
 //! `--lengths`: the light of a picture in intervals of the optical length of paths.
 
 use crate::arguments::Common;
-use crate::commands::progress::Report;
+use crate::commands::shared::progress::Report;
 use crate::process::interrupt::Interrupt;
 use crate::process::output;
 use bilux::math::Rgb;

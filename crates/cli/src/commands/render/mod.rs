@@ -1,16 +1,27 @@
 //! `bilux render`: renders pictures of scenes.
 
-use super::finishing::finish;
-use super::frames::FinishedFrames;
-use super::given::Given;
-use super::input::Input;
-use super::targets::{Target, frame_path, is_stdout, still_frames, targets};
-use super::{DONE, aov, keeping, log, replaying, report_notes, watching};
+pub(in crate::commands) mod aov;
+pub(crate) mod denoisers;
+pub(in crate::commands) mod finishing;
+pub(in crate::commands) mod frames;
+pub(in crate::commands) mod input;
+pub(in crate::commands) mod keeping;
+pub(in crate::commands) mod lengths;
+pub(in crate::commands) mod log;
+pub(in crate::commands) mod replaying;
+pub(in crate::commands) mod stats;
+pub(in crate::commands) mod targets;
+pub(in crate::commands) mod time_limit;
+pub(in crate::commands) mod watching;
+pub(in crate::commands) mod written;
+
 use crate::arguments::settings_from;
 use crate::arguments::{Common, Render};
-use crate::commands::denoisers::{begin_loading, check_scenes};
-use crate::commands::progress::of_series;
-use crate::commands::sandbox_paths::{SandboxPaths, check_read, folder_of, leads_out};
+use crate::commands::DONE;
+use crate::commands::shared::given::Given;
+use crate::commands::shared::progress::of_series;
+use crate::commands::shared::reading::report_notes;
+use crate::commands::shared::sandbox_paths::{SandboxPaths, check_read, folder_of, leads_out};
 use crate::process::ending::{finished, under_way};
 use crate::process::interrupt::{Interrupt, interrupt};
 use crate::process::{output, signals, usage};
@@ -20,9 +31,14 @@ use bilux::checkpoint::checkpoint_path;
 use bilux::scene::{Parameters, SceneBuilder};
 use bilux::watch::Watched;
 use bilux::{JobRequest, Series};
+use denoisers::{begin_loading, check_scenes};
+use finishing::finish;
+use frames::FinishedFrames;
+use input::Input;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use targets::{Target, frame_path, is_stdout, still_frames, targets};
 
 pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
     let interrupt = interrupt();

@@ -1,9 +1,10 @@
 //! `--replay`: one sample again, in words and, with a name for a picture, drawn into that.
 
+use super::aov;
 use super::input::Input;
 use super::targets::is_stdout;
-use super::{DONE, aov};
-use crate::commands::progress::Report;
+use crate::commands::DONE;
+use crate::commands::shared::progress::Report;
 use crate::process::{output, usage};
 use anyhow::Context;
 use bilux::Job;

@@ -2,7 +2,8 @@
 
 use super::aov::{self, Layers};
 use super::input::Input;
-use super::{outputs, warn_lost_alpha};
+use crate::commands::shared::checks::warn_lost_alpha;
+use crate::commands::shared::outputs;
 use crate::process::interrupt::Interrupt;
 use anyhow::bail;
 use bilux::pictures::Picture;

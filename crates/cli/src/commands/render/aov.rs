@@ -4,7 +4,7 @@ use super::lengths;
 use super::targets::is_stdout;
 use crate::arguments::assignments::from_flag;
 use crate::arguments::{Common, Render};
-use crate::commands::progress::Report;
+use crate::commands::shared::progress::Report;
 use crate::process::interrupt::Interrupt;
 use crate::process::{output, usage};
 use anyhow::{Context, bail};

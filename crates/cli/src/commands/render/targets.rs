@@ -1,8 +1,9 @@
 //! Destinations of the pictures of a render. Mistakes are found before anything is rendered.
 
-use super::{check_folder, outputs};
 use crate::arguments::Render;
 pub use crate::arguments::streams::is_stdout;
+use crate::commands::shared::checks::check_folder;
+use crate::commands::shared::outputs;
 use anyhow::bail;
 use bilux::pictures::formats::format_of_path;
 use bilux::scene::error::nearest_name;

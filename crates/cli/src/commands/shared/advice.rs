@@ -1,7 +1,7 @@
 //! Advice in the parser's messages, which say what is missing or unknown, but not what to write.
 
+use super::checks::is_picture;
 use crate::arguments::Arguments;
-use crate::commands::is_picture;
 use bilux::scene::error::nearest_name;
 use clap::CommandFactory;
 use clap::error::{ContextKind, ContextValue, ErrorKind};

@@ -1,10 +1,10 @@
 //! Files that commands read, or standard input in their place.
 
-use super::load;
 use super::pictures::{holds_picture, read_picture, report};
-use super::targets::is_stdout;
+use super::reading::load;
 use crate::arguments::Common;
 use crate::arguments::assignments::from_flag;
+use crate::commands::render::targets::is_stdout;
 use crate::process::usage;
 use anyhow::{Context, bail};
 use bilux::formats::ReadOptions;

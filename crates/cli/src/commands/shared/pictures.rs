@@ -1,6 +1,7 @@
 //! Pictures that commands read: their layers, and what is wrong with them.
 
-use super::{is_picture, report_warnings};
+use super::checks::is_picture;
+use super::reading::report_warnings;
 use crate::arguments::Common;
 use bilux::pictures::{Limits, PICTURE_FORMATS, Picture, PictureError, foreign_format, open_regular};
 use bilux::scene::{Span, Warning};

@@ -1,11 +1,15 @@
 //! One picture of `bilux render`: from its job to the file.
 
+use super::aov;
 use super::input::Input;
 use super::keeping::Keeping;
+use super::log;
+use super::stats;
 use super::targets::{Target, is_stdout};
+use super::time_limit;
 use super::written::{self, Denoising};
-use super::{DONE, aov, log, stats, time_limit};
-use crate::commands::progress::Report;
+use crate::commands::DONE;
+use crate::commands::shared::progress::Report;
 use crate::preview::{Observers, Preview};
 use crate::process::ending::{end, finished, under_way};
 use crate::process::{output, usage};
