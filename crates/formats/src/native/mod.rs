@@ -3,6 +3,7 @@
 //! The reader first parses a file and its includes. It then collects settings, materials and models from each part
 //! in turn, so their order in the files does not matter. Finally it replaces materials, and makes changes.
 
+mod definitions;
 mod displaced;
 mod document;
 mod include;

@@ -1,5 +1,6 @@
 //! A JSON schema of scene files, for editors, generated from the tables that the reader uses.
 
+use super::definitions::{Definitions, reference};
 use super::displaced::DISPLACEMENT;
 use super::pictures::PICTURE;
 use super::place::KEYFRAME_KEYS;
@@ -14,45 +15,49 @@ use serde_json::{Map, Value, json};
 
 /// The JSON schema (draft 2020-12) of native scene files. `settings` are the keys of `[render]`.
 pub fn toml_schema(settings: &[Parameter]) -> Value {
-    let rows = |entries: Vec<&Entry>, extra: &[(&str, Value)], kind_default: Option<&str>| {
-        one_of(entries, "kind", extra, kind_default)
-    };
-    let name = ("name", described("string", "its name"));
-    let materials = rows(MATERIALS.iter().map(|r| &r.entry).collect(), std::slice::from_ref(&name), None);
-    let lights = rows(LIGHTS.iter().map(|r| &r.entry).collect(), std::slice::from_ref(&name), None);
-    let cameras: Vec<&Entry> = CAMERAS.iter().map(|r| &r.entry).collect();
-    let keyframes = ("keyframes", camera_keyframes(&cameras));
-    let camera = rows(cameras, &[name, keyframes], Some("perspective"));
+    let mut parts = Definitions::default();
+    let tables = tables_of_files(settings, &mut parts);
+    let formulas = TEXTURES.iter().map(|r| &r.entry).collect();
+    let formulas = variants("formula", formulas, &[], &mut parts);
+    parts.part("formula", formulas);
+    let displacement = displacement(&mut parts);
+    parts.part("displacement", displacement);
+    let voxels = [("place", place_of_voxels(&mut parts))];
+    let densities = variants("density", DENSITIES.iter().map(|r| &r.entry).collect(), &voxels, &mut parts);
+    parts.part("density", densities);
     json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Bilux scene",
         "type": "object",
         "additionalProperties": false,
-        "properties": {
-            "include": {
-                "description": "scene files of any format, relative to this one, to include",
-                "type": "array",
-                "items": { "type": "string" },
-            },
-            "base": described("string", "the scene file, relative to this one, that [render] and [[change]] change"),
-            "render": {
-                "description": "the render settings",
-                "type": "object",
-                "additionalProperties": settings.is_empty(),
-                "properties": properties(settings),
-            },
-            "camera": { "oneOf": [camera.clone(), list(camera)] },
-            "light": list(lights),
-            "material": list(materials),
-            "model": list(model()),
-            "replace": list(replacement()),
-            "change": list(changed()),
+        "properties": tables,
+        "$defs": parts.finish(),
+    })
+}
+
+fn tables_of_files(settings: &[Parameter], parts: &mut Definitions) -> Value {
+    let name = [("name", described("string", "its name"))];
+    let camera = camera(&name, parts);
+    let camera = parts.part("camera", camera);
+    json!({
+        "include": {
+            "description": "scene files of any format, relative to this one, to include",
+            "type": "array",
+            "items": { "type": "string" },
         },
-        "$defs": {
-            "formula": rows(TEXTURES.iter().map(|r| &r.entry).collect(), &[], None),
-            "displacement": displacement(),
-            "density": rows(DENSITIES.iter().map(|r| &r.entry).collect(), &[("place", place_of_voxels())], None),
+        "base": described("string", "the scene file, relative to this one, that [render] and [[change]] change"),
+        "render": {
+            "description": "the render settings",
+            "type": "object",
+            "additionalProperties": settings.is_empty(),
+            "properties": properties(settings, parts),
         },
+        "camera": { "oneOf": [camera, list(camera.clone())] },
+        "light": list(variants("light", LIGHTS.iter().map(|r| &r.entry).collect(), &name, parts)),
+        "material": list(variants("material", MATERIALS.iter().map(|r| &r.entry).collect(), &name, parts)),
+        "model": list(model(parts)),
+        "replace": list(replacement()),
+        "change": list(changed()),
     })
 }
 
@@ -64,10 +69,23 @@ fn described(kind: &str, description: &str) -> Value {
     json!({ "type": kind, "description": description })
 }
 
-/// A table that matches one of the rows, distinguished by a key.
-fn one_of(rows: Vec<&Entry>, key: &str, extra: &[(&str, Value)], default: Option<&str>) -> Value {
+/// A table that matches one of the rows, distinguished by `kind`. `of` names what the rows share.
+fn variants(of: &str, rows: Vec<&Entry>, extra: &[(&str, Value)], parts: &mut Definitions) -> Value {
+    let mut all = tables(rows, "kind", extra, None, parts);
+    parts.share(of, &mut all);
+    json!({ "oneOf": all })
+}
+
+/// A table for each of the rows, distinguished by a key.
+fn tables(
+    rows: Vec<&Entry>,
+    key: &str,
+    extra: &[(&str, Value)],
+    default: Option<&str>,
+    parts: &mut Definitions,
+) -> Vec<Value> {
     let table = |entry: &Entry| {
-        let mut all = properties(entry.parameters);
+        let mut all = properties(entry.parameters, parts);
         all.extend(extra.iter().map(|(key, value)| ((*key).to_owned(), value.clone())));
         all.insert(key.to_owned(), json!({ "const": entry.name }));
         let needed = entry.parameters.iter().filter(|p| p.default.is_empty()).map(|p| p.name);
@@ -80,15 +98,15 @@ fn one_of(rows: Vec<&Entry>, key: &str, extra: &[(&str, Value)], default: Option
             "required": needed.chain(kind).collect::<Vec<_>>(),
         })
     };
-    json!({ "oneOf": rows.into_iter().map(table).collect::<Vec<_>>() })
+    rows.into_iter().map(table).collect()
 }
 
-fn properties(parameters: &[Parameter]) -> Map<String, Value> {
-    parameters.iter().map(|p| (p.name.to_owned(), property(p))).collect()
+fn properties(parameters: &[Parameter], parts: &mut Definitions) -> Map<String, Value> {
+    parameters.iter().map(|p| (p.name.to_owned(), property(p, parts))).collect()
 }
 
-fn property(parameter: &Parameter) -> Value {
-    let mut schema = values(parameter.kind);
+fn property(parameter: &Parameter, parts: &mut Definitions) -> Value {
+    let mut schema = values(parameter.kind, parts);
     let unit = if parameter.unit.is_empty() { String::new() } else { format!(", in {}", parameter.unit) };
     schema["description"] = format!("{}{unit}", parameter.summary).into();
     if let Some(default) = default_value(parameter) {
@@ -97,81 +115,95 @@ fn property(parameter: &Parameter) -> Value {
     schema
 }
 
-fn values(kind: ParameterKind) -> Value {
-    let colour = |min: f64, max: f64| {
-        let channel = json!({ "type": "number", "minimum": min, "maximum": max });
-        let mut all =
-            vec![json!({ "type": "array", "items": channel, "minItems": 3, "maxItems": 3 }), channel];
-        // No light is limited to 1.
-        if max > 1.0 {
-            all.push(described("string", "a quantity of light, such as 800 lm 2700 K"));
-        }
-        all
-    };
+/// The values of a kind, never as a lone reference: their description is beside them.
+fn values(kind: ParameterKind, parts: &mut Definitions) -> Value {
     match kind {
         ParameterKind::Bool => json!({ "type": "boolean" }),
         ParameterKind::Integer { min, max } => json!({ "type": "integer", "minimum": min, "maximum": max }),
         ParameterKind::Number { min, max } => json!({ "type": "number", "minimum": min, "maximum": max }),
-        ParameterKind::Colour { min, max } => json!({ "oneOf": colour(min, max) }),
+        ParameterKind::Colour { min, max } => json!({ "oneOf": colour(min, max, parts) }),
         ParameterKind::ColourTexture { min, max } => {
-            let textures = [texture(&[]), formula()];
-            json!({ "oneOf": colour(min, max).into_iter().chain(textures).collect::<Vec<_>>() })
+            let textures = [texture(parts), reference("formula")];
+            json!({ "oneOf": colour(min, max, parts).into_iter().chain(textures).collect::<Vec<_>>() })
         }
         ParameterKind::NumberTexture { min, max } => {
-            let number = json!({ "type": "number", "minimum": min, "maximum": max });
-            let channel = json!({ "enum": CHANNELS, "description": "the channel that is read" });
-            json!({ "oneOf": [number, texture(&[("channel", channel)]), formula()] })
+            json!({ "oneOf": [parts.number(min, max), channel_texture(parts), reference("formula")] })
         }
-        ParameterKind::Texture => json!({ "oneOf": [texture(&[]), formula()] }),
-        ParameterKind::Grid => grid(),
+        ParameterKind::Texture => json!({ "oneOf": [texture(parts), reference("formula")] }),
+        ParameterKind::Grid => grid(parts),
         ParameterKind::Distribution => described("string", "a file of a lamp, relative to this file"),
         ParameterKind::Stops { min, max } => {
-            let stop = json!([{ "type": "number" }, { "oneOf": colour(min, max) }]);
+            let stop = json!([{ "type": "number" }, { "oneOf": colour(min, max, parts) }]);
             let stop = json!({ "type": "array", "prefixItems": stop, "minItems": 2, "maxItems": 2 });
             json!({ "type": "array", "items": stop, "minItems": 1 })
         }
-        ParameterKind::Vector => vector(),
+        ParameterKind::Vector => three_or_one(parts),
         ParameterKind::Choice(words) => json!({ "enum": words }),
         ParameterKind::Text | ParameterKind::Material => json!({ "type": "string" }),
     }
 }
 
-/// A procedural texture, which may contain others.
-fn formula() -> Value {
-    json!({ "$ref": "#/$defs/formula" })
+/// The ways to write a colour without a texture.
+fn colour(min: f64, max: f64, parts: &mut Definitions) -> Vec<Value> {
+    let mut all = vec![parts.colour(min, max), parts.number(min, max)];
+    // No light is limited to 1.
+    if max > 1.0 {
+        let quantity = described("string", "a quantity of light, such as 800 lm 2700 K");
+        all.push(parts.part("light-quantity", quantity));
+    }
+    all
 }
 
-/// An image in place of a value.
-fn texture(extra: &[(&str, Value)]) -> Value {
+/// An image in place of a colour.
+fn texture(parts: &mut Definitions) -> Value {
+    let picture = picture(&[], parts);
+    parts.part("texture", picture)
+}
+
+/// An image in place of a number, of which one channel is read.
+fn channel_texture(parts: &mut Definitions) -> Value {
+    let channel = json!({ "enum": CHANNELS, "description": "the channel that is read" });
+    let picture = picture(&[("channel", channel)], parts);
+    parts.part("channel-texture", picture)
+}
+
+fn picture(extra: &[(&str, Value)], parts: &mut Definitions) -> Value {
     let mut all: Map<String, Value> =
         extra.iter().map(|(key, value)| ((*key).to_owned(), value.clone())).collect();
-    all.extend(properties(PICTURE.parameters));
+    all.extend(properties(PICTURE.parameters, parts));
     all.insert("texture".to_owned(), described("string", "a picture, relative to this file"));
     all.insert("layer".to_owned(), described("string", "a layer of an EXR, in place of its main picture"));
     json!({ "type": "object", "additionalProperties": false, "properties": all, "required": ["texture"] })
 }
 
 /// Numbers in space, from a file or by a formula.
-fn grid() -> Value {
+fn grid(parts: &mut Definitions) -> Value {
     let properties = json!({
         "grid": described("string", "a file of grids, relative to this file"),
         "name": described("string", "the grid of that file"),
-        "place": place_of_voxels(),
+        "place": place_of_voxels(parts),
     });
     let file = json!({ "type": "object", "additionalProperties": false, "properties": properties, "required": ["grid"] });
-    json!({ "oneOf": [file, { "$ref": "#/$defs/density" }] })
+    json!({ "oneOf": [parts.part("grid-file", file), reference("density")] })
 }
 
-fn place_of_voxels() -> Value {
-    json!({
+fn place_of_voxels(parts: &mut Definitions) -> Value {
+    let place = json!({
         "type": "array", "items": { "type": "number" }, "minItems": 12, "maxItems": 12,
         "description": "where it is in the object: the steps of a voxel along x, y and z, and the corner of the first one",
-    })
+    });
+    parts.part("place-of-voxels", place)
 }
 
-fn vector() -> Value {
-    let numbers = json!({ "type": "array", "items": { "type": "number" }, "minItems": 3, "maxItems": 3 });
-    json!({ "oneOf": [numbers, { "type": "number" }] })
+/// A vector without a description of its own.
+fn vector(parts: &mut Definitions) -> Value {
+    let vector = three_or_one(parts);
+    parts.part("vector", vector)
+}
+
+fn three_or_one(parts: &mut Definitions) -> Value {
+    let three = json!({ "type": "array", "items": { "type": "number" }, "minItems": 3, "maxItems": 3 });
+    json!({ "oneOf": [parts.part("three-numbers", three), { "type": "number" }] })
 }
 
 /// A default value as JSON; the tables state it as text.
@@ -190,32 +222,37 @@ fn default_value(parameter: &Parameter) -> Option<Value> {
     })
 }
 
-fn camera_keyframes(cameras: &[&Entry]) -> Value {
-    let mut all: Map<String, Value> = cameras.iter().flat_map(|entry| properties(entry.parameters)).collect();
-    all.insert("time".to_owned(), described("number", "the time in seconds"));
-    let mut schema = list(
-        json!({ "type": "object", "additionalProperties": false, "properties": all, "required": ["time"] }),
+/// `[camera]`: one of the cameras, whose keyframes have the parameters of all of them.
+fn camera(name: &[(&str, Value); 1], parts: &mut Definitions) -> Value {
+    let cameras: Vec<&Entry> = CAMERAS.iter().map(|r| &r.entry).collect();
+    let mut frame: Map<String, Value> =
+        cameras.iter().flat_map(|entry| properties(entry.parameters, parts)).collect();
+    frame.insert("time".to_owned(), described("number", "the time in seconds"));
+    let extra = [name[0].clone(), ("keyframes", reference("camera-keyframes"))];
+    let mut all = tables(cameras, "kind", &extra, Some("perspective"), parts);
+    all.push(
+        json!({ "type": "object", "additionalProperties": false, "properties": frame, "required": ["time"] }),
     );
-    schema["description"] = "keyframes in order of time, each with the parameters that change".into();
-    schema
+    parts.share("camera", &mut all);
+    let mut keyframes = list(all.pop().unwrap_or_default());
+    keyframes["description"] = "keyframes in order of time, each with the parameters that change".into();
+    parts.part("camera-keyframes", keyframes);
+    json!({ "oneOf": all })
 }
 
 /// `[[model]]`: a file, a shape or a generator.
-fn model() -> Value {
-    let place = place();
-    let common = common_of_models();
-    let with_common = |entries: Vec<&Entry>, key: &str| {
-        let extra: Vec<(&str, Value)> =
-            common.iter().chain(&place).map(|(key, value)| (*key, value.clone())).collect();
-        one_of(entries, key, &extra, None)["oneOf"].clone()
-    };
+fn model(parts: &mut Definitions) -> Value {
+    let mut common = common_of_models();
+    common.extend(place(parts));
     let file = Entry { name: "", summary: "meshes from a file", source: "", parameters: &[] };
-    let mut tables = with_common(vec![&file], "file");
-    tables[0]["properties"]["file"] = described("string", "a scene file, relative to this one");
-    let shapes = with_common(SHAPES.iter().map(|row| &row.entry).collect(), "shape");
-    let generators = with_common(GENERATORS.iter().map(|row| &row.entry).collect(), "generate");
-    let all = [tables, shapes, generators].into_iter().filter_map(|rows| rows.as_array().cloned()).flatten();
-    json!({ "oneOf": all.collect::<Vec<_>>() })
+    let mut all = tables(vec![&file], "file", &common, None, parts);
+    all[0]["properties"]["file"] = described("string", "a scene file, relative to this one");
+    let shapes = SHAPES.iter().map(|row| &row.entry).collect();
+    all.extend(tables(shapes, "shape", &common, None, parts));
+    let generators = GENERATORS.iter().map(|row| &row.entry).collect();
+    all.extend(tables(generators, "generate", &common, None, parts));
+    parts.share("model", &mut all);
+    json!({ "oneOf": all })
 }
 
 fn common_of_models() -> Vec<(&'static str, Value)> {
@@ -234,17 +271,17 @@ fn common_of_models() -> Vec<(&'static str, Value)> {
                 "description": "which rays see it: all, all but those of the camera, or none",
             }),
         ),
-        ("displacement", json!({ "$ref": "#/$defs/displacement" })),
+        ("displacement", reference("displacement")),
         ("with", words),
     ]
 }
 
-fn displacement() -> Value {
+fn displacement(parts: &mut Definitions) -> Value {
     json!({
         "type": "object",
         "description": DISPLACEMENT.summary,
         "additionalProperties": false,
-        "properties": properties(DISPLACEMENT.parameters),
+        "properties": properties(DISPLACEMENT.parameters, parts),
         "required": ["map"],
     })
 }
@@ -279,22 +316,22 @@ fn changed() -> Value {
     })
 }
 
-fn place() -> Vec<(&'static str, Value)> {
+fn place(parts: &mut Definitions) -> Vec<(&'static str, Value)> {
     let axis = json!({
         "type": "object",
         "additionalProperties": false,
         "properties": {
-            "axis": vector(),
+            "axis": vector(parts),
             "degrees": { "type": "number" },
             "quaternion": { "type": "array", "items": { "type": "number" }, "minItems": 4, "maxItems": 4 },
         },
     });
-    let rotate = json!({ "oneOf": [vector(), axis], "description": "degrees about x, then y, then z; or about an axis" });
+    let rotate = json!({ "oneOf": [vector(parts), axis], "description": "degrees about x, then y, then z; or about an axis" });
     let pose = [
         ("time", described("number", "the time in seconds")),
-        ("translate", vector()),
-        ("rotate", rotate),
-        ("scale", vector()),
+        ("translate", vector(parts)),
+        ("rotate", parts.part("rotation", rotate)),
+        ("scale", vector(parts)),
     ];
     debug_assert!(pose.iter().map(|(key, _)| *key).eq(KEYFRAME_KEYS));
     let frame: Map<String, Value> =

@@ -50,6 +50,7 @@ mod ply_types;
 mod public_reports;
 mod radiance;
 mod round_trips;
+mod schema;
 mod shared_files;
 mod step;
 mod step_truth;
