@@ -17,6 +17,7 @@ mod function_length;
 mod ignored_tests;
 mod links;
 mod manifests;
+mod measures;
 mod modules;
 mod portable;
 mod reading_order;
@@ -67,9 +68,17 @@ const RULES: &[Rule] = &[
     Rule { name: "decisions", check: decisions::check },
 ];
 
-/// Applies every rule to the repository as it is on disk.
-pub(crate) fn run(_: &[String]) -> Result<()> {
+/// Applies every rule to the repository as it is on disk, or prints its measures.
+pub(crate) fn run(arguments: &[String]) -> Result<()> {
     let repository = Repository::read()?;
+    match arguments {
+        [] => {}
+        [word] if word == "--measures" => {
+            print!("{}", measures::table(&repository));
+            return Ok(());
+        }
+        _ => bail!("the only option is `--measures`"),
+    }
     let mut count = 0;
     for rule in RULES {
         for violation in (rule.check)(&repository) {

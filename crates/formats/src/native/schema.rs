@@ -147,10 +147,14 @@ fn values(kind: ParameterKind, parts: &mut Definitions) -> Value {
 fn colour(min: f64, max: f64, parts: &mut Definitions) -> Vec<Value> {
     let mut all = vec![parts.colour(min, max), parts.number(min, max)];
     // No light is limited to 1.
-    if max > 1.0 {
+    all.push(if max > 1.0 {
         let quantity = described("string", "a quantity of light, such as 800 lm 2700 K");
-        all.push(parts.part("light-quantity", quantity));
-    }
+        parts.part("light-quantity", quantity)
+    } else {
+        let mut shown = described("string", "a colour as a screen shows it, #rrggbb");
+        shown["pattern"] = "^#[0-9a-fA-F]{6}$".into();
+        parts.part("screen-colour", shown)
+    });
     all
 }
 

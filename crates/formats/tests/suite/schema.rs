@@ -34,6 +34,15 @@ fn holds(root: &Value, rules: &Map<String, Value>, rule: &str, wanted: &Value, v
         "enum" => wanted.as_array().unwrap().contains(value),
         "type" if wanted.is_string() => is_of_type(wanted, value),
         "type" => wanted.as_array().unwrap().iter().any(|name| is_of_type(name, value)),
+        "pattern" => {
+            assert_eq!(wanted, "^#[0-9a-fA-F]{6}$");
+            let is_colour = |text: &str| {
+                text.strip_prefix('#').is_some_and(|digits| {
+                    digits.len() == 6 && digits.bytes().all(|digit| digit.is_ascii_hexdigit())
+                })
+            };
+            value.as_str().is_none_or(is_colour)
+        }
         "minimum" => number(|number, least| number >= least),
         "maximum" => number(|number, most| number <= most),
         "minItems" => !value.is_array() || length >= wanted.as_u64().unwrap(),
@@ -157,6 +166,7 @@ const BROKEN: &[(&str, &str, &str)] = &[
     ("[[material]]\nname = 'm'\nkind = 'diffuse'\nreflectance = [0, 0.5, 1]", "1]", "2]"),
     ("[[material]]\nname = 'm'\nkind = 'diffuse'\nreflectance = 0.5", "0.5", "[0.5, 0.5]"),
     ("[[material]]\nname = 'm'\nkind = 'diffuse'\nreflectance = 0.5", "0.5", "'800 lm'"),
+    ("[[material]]\nname = 'm'\nkind = 'diffuse'\nreflectance = '#ff8000'", "#ff8000", "#ff80"),
     ("[[material]]\nname = 'm'\nkind = 'diffuse'\nopacity = 0.5", "0.5", "[1, 1, 1]"),
     ("[[material]]\nname = 'm'\nkind = 'diffuse'\nopacity = 0.5", "0.5", "1.5"),
     ("[[material]]\nname = 'm'\nkind = 'diffuse'\nemission_scale = 2", "emission_scale", "emision_scale"),

@@ -100,7 +100,7 @@ pub(crate) fn to_camera<const N: usize>(
     let lens = if task.context.camera.has_lens() { warp::sample_disc(u_lens) } else { Vec2::ZERO };
     let seen = task.context.camera.connect(y.at.p(), lens, y.at.time())?;
     let exposure = task.context.exposure;
-    if !task.context.reach.contains(seen.film) || !exposure.exposes(seen.film, y.at.time()) {
+    if !task.context.splat_bounds.contains(seen.film) || !exposure.exposes(seen.film, y.at.time()) {
         return None;
     }
     let density = seen.density * exposure.density(y.at.time());
@@ -135,9 +135,9 @@ pub(crate) fn to_camera<const N: usize>(
 
 /// A point of the film, and where else beside it pixels see the same: light that arrives there arrives everywhere.
 pub(crate) fn places_on_film(context: &Context, film: Vec2) -> impl Iterator<Item = Vec2> {
-    let reach = context.reach;
+    let bounds = context.splat_bounds;
     let beside = context.camera.repeats(film).into_iter().flatten();
-    std::iter::once(film).chain(beside.filter(move |film| reach.contains(*film)))
+    std::iter::once(film).chain(beside.filter(move |film| bounds.contains(*film)))
 }
 
 /// Connects a camera vertex with a point sampled on a light (s = 1), which was chosen with this probability.

@@ -11,6 +11,7 @@ pub mod aovs;
 pub(crate) mod batch_means;
 pub(crate) mod bytes;
 pub(crate) mod error;
+pub(crate) mod exposure;
 pub(crate) mod failures;
 pub mod filters;
 pub mod interval;
@@ -18,6 +19,7 @@ pub mod limits;
 pub(crate) mod merged_layers;
 pub mod partial;
 pub(crate) mod plain_bytes;
+pub(crate) mod splat_bounds;
 pub mod window;
 
 use crate::film::error::FilmError;

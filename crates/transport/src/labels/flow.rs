@@ -1,7 +1,6 @@
 //! Optical flow: where the labelled points are at another moment, and whether they are visible there.
 
 use super::surface::{LabelRays, Labelled};
-use crate::sampling::exposure::Exposure;
 use bilux_math::{DVec2, DVec3, Vec2, Vec3};
 use bilux_scene::{Camera, CameraSample, Scene, Tracer};
 
@@ -73,7 +72,7 @@ impl<'a> Flow<'a> {
             return Followed { motion: Vec2::ZERO, is_hidden: false };
         }
         let now = labelled.surface.time;
-        let exposure = Exposure::new(here.scene, here.settings);
+        let exposure = here.settings.exposure(here.scene);
         let moved = |film: DVec2| {
             let time = self.moment.time + exposure.delay(film.as_vec2());
             let places = [now, time];

@@ -2,7 +2,6 @@
 
 use crate::film::window::Window;
 use crate::media::Media;
-use crate::sampling::exposure::Exposure;
 use crate::schedule::settings::RenderSettings;
 use bilux_accel::Hit;
 use bilux_math::{DVec2, Vec2, Vec3};
@@ -56,7 +55,7 @@ impl LabelRays<'_> {
         let place = self.settings.pixel_anchor.offset();
         let RenderSettings { width, height, .. } = *self.settings;
         let film = Vec2::new((x as f32 + place) / width as f32, (y as f32 + place) / height as f32);
-        let time = self.opens() + Exposure::new(self.scene, self.settings).delay(film);
+        let time = self.opens() + self.settings.exposure(self.scene).delay(film);
         let sample = CameraSample { film, lens: Vec2::ZERO, time };
         self.scene.for_labels(self.camera.ray(&sample))
     }

@@ -5,7 +5,6 @@ use crate::film::interval::replicate;
 use crate::light::choice::LightChoice;
 use crate::light::emission::{Emission, Guide};
 use crate::photons::Photons;
-use crate::sampling::exposure::Exposure;
 use crate::sampling::sampler::{PixelSampler, regular_pattern};
 use crate::sampling::task::{Context, SampleState};
 use crate::schedule::settings::RenderSettings;
@@ -56,8 +55,8 @@ impl<'a> CameraRays<'a> {
         let context = Context {
             scene,
             camera,
-            reach: settings.reach(),
-            exposure: Exposure::new(scene, settings),
+            splat_bounds: settings.splat_bounds(),
+            exposure: settings.exposure(scene),
             lights,
             emission: Emission::new(scene, None),
             // The paper that receives light is no surface of the scene.

@@ -1,10 +1,10 @@
 //! Data that an integrator works with: what all samples of a render share, and what belongs to one of them.
 
+use crate::film::exposure::Exposure;
+use crate::film::splat_bounds::SplatBounds;
 use crate::light::choice::LightChoice;
 use crate::light::emission::Emission;
-use crate::sampling::exposure::Exposure;
 use crate::sampling::sampler::PixelSampler;
-use crate::schedule::settings::Reach;
 use crate::techniques::way::{Place, Way};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Camera, Scene, Tracer, TransportMode, Wavelength};
@@ -17,7 +17,7 @@ pub struct Context<'a> {
     /// The camera.
     pub camera: &'a dyn Camera,
     /// Part of the film's plane where light subpaths are connected with the camera.
-    pub(crate) reach: Reach,
+    pub(crate) splat_bounds: SplatBounds,
     /// When.
     pub(crate) exposure: Exposure,
     /// Chooses lights by what they bring.

@@ -1,11 +1,14 @@
 //! Settings of a render: everything apart from scene, camera and integrator.
 
 use crate::film::error::RenderError;
+use crate::film::exposure::Exposure;
 use crate::film::filters::Filter;
 use crate::film::limits::{DEFAULT_MAX_DEPTH, MAX_DEPTH, MAX_SAMPLES};
+use crate::film::splat_bounds::SplatBounds;
 use crate::film::window::Window;
 use bilux_math::Vec2;
 use bilux_math::parallel::{self, ThreadPool};
+use bilux_scene::Scene;
 use std::ops::Range;
 use std::time::Duration;
 
@@ -70,22 +73,6 @@ impl PixelAnchor {
     }
 }
 
-/// The part of the film's plane (the film is 0..1 on both axes) that its pixels' filters reach. Beyond the film's edge it is
-/// as wide as the filter is wider than a pixel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Reach {
-    min: Vec2,
-    max: Vec2,
-}
-
-impl Reach {
-    /// Whether some pixel reaches a point.
-    #[inline]
-    pub(crate) fn contains(&self, film: Vec2) -> bool {
-        film.cmpge(self.min).all() && film.cmplt(self.max).all()
-    }
-}
-
 impl RenderSettings {
     /// All samples of a film of this size.
     pub fn new(width: u32, height: u32, spp: u32) -> RenderSettings {
@@ -112,12 +99,17 @@ impl RenderSettings {
         self.crop.unwrap_or(Window::whole(self.width, self.height))
     }
 
-    /// Reach of the pixels of the whole film.
-    pub(crate) fn reach(&self) -> Reach {
+    /// Times at which the film's rows are exposed.
+    pub(crate) fn exposure(&self, scene: &Scene) -> Exposure {
+        Exposure::new(scene.shutter(), self.readout, self.height)
+    }
+
+    /// Bounds of splats on the whole film.
+    pub(crate) fn splat_bounds(&self) -> SplatBounds {
         let (size, anchor) = (Vec2::new(self.width as f32, self.height as f32), self.pixel_anchor.offset());
-        let reach = Vec2::splat(self.filter.radius());
+        let radius = Vec2::splat(self.filter.radius());
         let [first, last] = [Vec2::splat(anchor), size - Vec2::ONE + Vec2::splat(anchor)];
-        Reach { min: (first - reach) / size, max: (last + reach) / size }
+        SplatBounds { min: (first - radius) / size, max: (last + radius) / size }
     }
 
     /// The settings that choosing integrators see: the choice is the same with an interval and without.

@@ -1,8 +1,6 @@
 //! When the points of the film are exposed: all at once, or one row after the other, as a rolling shutter does it.
 
-use crate::schedule::settings::RenderSettings;
 use bilux_math::Vec2;
-use bilux_scene::Scene;
 
 /// Every row is exposed for as long, the first one first.
 #[derive(Clone, Copy, Debug)]
@@ -17,13 +15,13 @@ pub(crate) struct Exposure {
 }
 
 impl Exposure {
-    /// The shutter of a scene is open while any row is exposed. The middles of rows are exposed evenly one after the other.
-    pub(crate) fn new(scene: &Scene, settings: &RenderSettings) -> Exposure {
-        let [opens, last] = scene.shutter();
+    /// Exposure of so many rows while the shutter is open, which it is while any row is exposed. The middles of rows are exposed evenly
+    /// one after the other, the last one `readout` seconds after the first.
+    pub(crate) fn new([opens, last]: [f32; 2], readout: f32, rows: u32) -> Exposure {
         // A single row is the first and the last.
-        let readout = if settings.height > 1 { settings.readout } else { 0.0 };
-        let closes = if readout == 0.0 { last } else { (last - settings.readout).max(opens) };
-        Exposure { opens, closes, readout, half_row: 0.5 / settings.height as f32 }
+        let readout = if rows > 1 { readout } else { 0.0 };
+        let closes = if readout == 0.0 { last } else { (last - readout).max(opens) };
+        Exposure { opens, closes, readout, half_row: 0.5 / rows as f32 }
     }
 
     /// When the first row's exposure begins and ends.
