@@ -9,7 +9,7 @@ const STACKS: [(Aov, &str); 2] = [(Aov::Groups, "group_"), (Aov::Strategies, "st
 pub(crate) fn layer_of(prefix: &str) -> &str {
     let numbered = prefix.len().checked_sub(2).and_then(|stem| prefix.split_at_checked(stem));
     let numbered = numbered.filter(|(_, number)| number.bytes().all(|digit| digit.is_ascii_digit()));
-    let is_layer = |row: &&AovEntry| match (row.aov.layer(), numbered) {
+    let is_layer = |row: &&AovEntry| match (row.layer, numbered) {
         (Some(layer), Some((stem, _))) if row.aov.is_matte() => layer == stem,
         (Some(layer), _) => layer == prefix && !row.aov.is_matte() && row.aov != Aov::Groups,
         (None, _) => false,
@@ -37,24 +37,15 @@ pub(crate) fn meaning(name: &str) -> Meaning<'_> {
 /// The names of the channels of a layer in a file, by their usual order.
 pub(crate) fn channels(layer: &str, count: usize) -> Vec<String> {
     let row = AOVS.iter().find(|row| is_name(row, layer));
-    let aov = row.map(|row| row.aov);
-    let prefix = aov.and_then(Aov::layer).unwrap_or(layer);
-    if aov.is_some_and(Aov::is_matte) {
+    let prefix = row.and_then(|row| row.layer).unwrap_or(layer);
+    if row.is_some_and(|row| row.aov.is_matte()) {
         let component = |i: usize| ["red", "green", "blue", "alpha"][i % 4];
         return (0..count).map(|i| format!("{prefix}{:02}.{}", i / 4, component(i))).collect();
     }
-    let components: &[&str] = match (aov, count) {
+    let components: &[&str] = match (row, count) {
         (None, 1) if layer.is_empty() => &["Y"],
         (None, 2) if layer.is_empty() => &["Y", "A"],
-        (Some(Aov::Depth | Aov::ZDepth), 1) => &["Z"],
-        (Some(Aov::Samples), 1) => &["count"],
-        (Some(aov), 1) if aov.is_work() => &["mean"],
-        (Some(Aov::Ids), 2) => &["object", "material"],
-        (Some(Aov::Instance | Aov::Category | Aov::Primitive), 1) => &["id"],
-        (Some(Aov::Uv | Aov::Barycentric), 2) => &["U", "V"],
-        (Some(Aov::Occluded), 2) => &["next", "previous"],
-        (Some(Aov::Guides), 7) => &["R", "G", "B", "X", "Y", "Z", "depth"],
-        (Some(Aov::Normal | Aov::CameraNormal | Aov::Position), 3) => &["X", "Y", "Z"],
+        (Some(row), _) if row.channels.len() == count => row.channels,
         (_, 1) => &[""],
         (_, 2) => &["X", "Y"],
         (_, 3) => &["R", "G", "B"],
@@ -69,7 +60,7 @@ pub(crate) fn is_matte(layer: &str) -> bool {
 }
 
 fn is_name(row: &AovEntry, name: &str) -> bool {
-    !name.is_empty() && (row.entry.name == name || row.aov.layer() == Some(name))
+    !name.is_empty() && (row.entry.name == name || row.layer == Some(name))
 }
 
 fn qualified(prefix: &str, component: &str) -> String {

@@ -207,7 +207,7 @@ fn push_made_later(
         let found = if outcome.rendered.cancelled { None } else { job.strategies(outcome, progress)? };
         match &found {
             Some(found) => push_strategies(found, picture)?,
-            None => missing.extend(AOVS.iter().filter(|row| row.aov == Aov::Strategies)),
+            None => missing.push(Aov::Strategies.row()),
         }
     }
     let names: Vec<&str> = missing.iter().map(|row| row.entry.name).collect();

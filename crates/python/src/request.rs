@@ -77,7 +77,7 @@ impl Request {
 /// If there is no such AOV.
 fn aovs(names: &[String]) -> Result<Vec<Aov>, SceneError> {
     let find = |name: &String| {
-        let found = AOVS.iter().find(|row| row.entry.name == name || row.aov.layer() == Some(name));
+        let found = AOVS.iter().find(|row| row.entry.name == name || row.layer == Some(name));
         found.map(|row| row.aov).ok_or_else(|| {
             SceneError::unknown("layer", name, AOVS.iter().map(|row| row.entry.name), &Span::default())
         })

@@ -4,8 +4,8 @@ use crate::job::Subject;
 use crate::job::labels;
 use crate::{Error, Job, Outcome};
 use bilux_math::Rgb;
-use bilux_pictures::Picture;
 use bilux_pictures::cryptomatte::Cryptomatte;
+use bilux_pictures::{Picture, PictureError};
 use bilux_scene::{Scene, SceneBuilder};
 use bilux_transport::aovs::Aov;
 use bilux_transport::mattes::mattes;
@@ -78,7 +78,7 @@ impl ExtraLayers {
                 let (x, y) = window.position(i);
                 film.samples(x, y) as f32
             };
-            layers.push_channel("samples.count", (0..window.pixels()).map(count).collect())?;
+            push_single(&mut layers, Aov::Samples, (0..window.pixels()).map(count).collect())?;
         }
         if wanted.iter().any(|aov| aov.is_matte())
             && !push_mattes(job, &mut layers, &settings, wanted, progress)?
@@ -111,6 +111,11 @@ impl ExtraLayers {
     }
 }
 
+/// Adds a layer that has a single channel.
+fn push_single(layers: &mut Picture, aov: Aov, samples: Vec<f32>) -> Result<(), PictureError> {
+    aov.channel_names().zip([samples]).try_for_each(|(name, samples)| layers.push_channel(name, samples))
+}
+
 /// False if it was interrupted.
 fn push_work(
     job: &Job,
@@ -129,8 +134,8 @@ fn push_work(
         (Aov::Nodes, work.nodes),
         (Aov::Tests, work.tests),
     ] {
-        if let Some(layer) = aov.layer().filter(|_| wanted.contains(&aov)) {
-            layers.push_channel(format!("{layer}.mean"), samples)?;
+        if wanted.contains(&aov) {
+            push_single(layers, aov, samples)?;
         }
     }
     Ok(true)
@@ -187,10 +192,8 @@ fn push_light(
         let pixels: Vec<Rgb> = (0..window.pixels()).map(light).collect();
         Ok(layers.push_rgb(layer, &pixels)?)
     };
-    for (film, (aov, layer)) in
-        parts.by_events.iter().flatten().zip([(Aov::Direct, "direct"), (Aov::Indirect, "indirect")])
-    {
-        if wanted.contains(&aov) {
+    for (film, aov) in parts.by_events.iter().flatten().zip([Aov::Direct, Aov::Indirect]) {
+        if let Some(layer) = aov.layer().filter(|_| wanted.contains(&aov)) {
             push(layer, film)?;
         }
     }

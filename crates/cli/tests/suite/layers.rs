@@ -1,7 +1,7 @@
 //! Layers for compositors, what pictures say about themselves, folders that are compared, and scenes that are explained.
 
 use bilux::pictures::{Picture, read};
-use bilux::transport::aovs::{AOVS, Aov};
+use bilux::transport::aovs::Aov;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -9,8 +9,8 @@ use tempfile::TempDir;
 
 /// The names of all layers of the table but some.
 fn layers_without(left_out: &[Aov]) -> String {
-    let rows = AOVS.iter().filter(|row| row.aov.layer().is_some() && !left_out.contains(&row.aov));
-    rows.map(|row| row.entry.name).collect::<Vec<_>>().join(",")
+    let aovs = Aov::layers().filter(|aov| !left_out.contains(aov));
+    aovs.map(|aov| aov.row().entry.name).collect::<Vec<_>>().join(",")
 }
 
 fn run(folder: &Path, command: &str) -> Output {

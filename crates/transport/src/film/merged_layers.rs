@@ -106,13 +106,13 @@ impl MergedLayers {
 /// True for a channel whose values are the same in every part that has the pixel: the coverage, and those of all AOVs but the
 /// few that are merged in a way of their own.
 fn is_even(name: &str) -> bool {
-    let is_of = |aov: &Aov| {
+    let is_of = |aov: Aov| {
         let rest = aov.layer().and_then(|layer| name.strip_prefix(layer));
         // As in "depth.Z", "group_lamp.R" and "CryptoObject00.red".
         rest.is_some_and(|rest| rest.starts_with(|c: char| c == '.' || c == '_' || c.is_ascii_digit()))
     };
-    let is_even = |aov: &&Aov| !matches!(aov, Aov::Samples | Aov::Variance);
-    name == COVERAGE || Aov::ALL_LAYERS.iter().filter(is_even).any(is_of)
+    let is_even = |aov: &Aov| !matches!(aov, Aov::Samples | Aov::Variance);
+    name == COVERAGE || Aov::layers().filter(is_even).any(is_of)
 }
 
 /// Places of the pixels of a film's window in the rows of the whole film.

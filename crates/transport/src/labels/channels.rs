@@ -1,6 +1,7 @@
-//! The channels of labels: one table, from which pictures, files and arrays get them.
+//! The numbers of labels: one table, from which the channels of pictures, files and arrays are made.
 
 use crate::film::aovs::Aov;
+use Value::{Float, Integer};
 use bilux_math::{Vec2, Vec3};
 
 /// All labels of a pixel.
@@ -47,53 +48,59 @@ impl Default for Label {
 }
 
 /// A number of a label.
+#[derive(Clone, Copy)]
 pub(super) enum Value {
     Float(fn(&Label) -> f32),
     Integer(fn(&Label) -> u32),
 }
 
-/// A row of [`CHANNELS`].
+/// A channel, as files have it.
 pub(super) struct Channel {
-    pub(super) aov: Aov,
-    /// As files have it.
-    pub(super) name: &'static str,
+    pub(super) name: String,
     pub(super) value: Value,
 }
 
-const fn float(aov: Aov, name: &'static str, of: fn(&Label) -> f32) -> Channel {
-    Channel { aov, name, value: Value::Float(of) }
+/// The channels of the wanted labels, in the order of the table.
+pub(super) fn channels(wanted: &[Aov]) -> Vec<Channel> {
+    let wanted = VALUES.iter().filter(|(aov, _)| wanted.contains(aov));
+    let named = wanted.flat_map(|(aov, values)| aov.channel_names().zip(*values));
+    named.map(|(name, &value)| Channel { name, value }).collect()
 }
 
-const fn integer(aov: Aov, name: &'static str, of: fn(&Label) -> u32) -> Channel {
-    Channel { aov, name, value: Value::Integer(of) }
-}
-
-/// The channels of all labels.
-pub(super) static CHANNELS: &[Channel] = &[
-    float(Aov::Normal, "normal.X", |label| label.normal.x),
-    float(Aov::Normal, "normal.Y", |label| label.normal.y),
-    float(Aov::Normal, "normal.Z", |label| label.normal.z),
-    float(Aov::CameraNormal, "camera_normal.X", |label| label.camera_normal.x),
-    float(Aov::CameraNormal, "camera_normal.Y", |label| label.camera_normal.y),
-    float(Aov::CameraNormal, "camera_normal.Z", |label| label.camera_normal.z),
-    float(Aov::Depth, "depth.Z", |label| label.depth),
-    float(Aov::ZDepth, "z_depth.Z", |label| label.z_depth),
-    integer(Aov::Ids, "id.object", |label| label.object),
-    integer(Aov::Ids, "id.material", |label| label.material),
-    integer(Aov::Instance, "instance.id", |label| label.instance),
-    integer(Aov::Category, "category.id", |label| label.category),
-    float(Aov::Position, "position.X", |label| label.position.x),
-    float(Aov::Position, "position.Y", |label| label.position.y),
-    float(Aov::Position, "position.Z", |label| label.position.z),
-    float(Aov::Uv, "uv.U", |label| label.uv.x),
-    float(Aov::Uv, "uv.V", |label| label.uv.y),
-    integer(Aov::Primitive, "primitive.id", |label| label.primitive),
-    float(Aov::Barycentric, "barycentric.U", |label| label.barycentric[0]),
-    float(Aov::Barycentric, "barycentric.V", |label| label.barycentric[1]),
-    float(Aov::Motion, "motion.X", |label| label.motion[0].x),
-    float(Aov::Motion, "motion.Y", |label| label.motion[0].y),
-    float(Aov::BackwardMotion, "backward_motion.X", |label| label.motion[1].x),
-    float(Aov::BackwardMotion, "backward_motion.Y", |label| label.motion[1].y),
-    float(Aov::Occluded, "occluded.next", |label| f32::from(u8::from(label.occluded[0]))),
-    float(Aov::Occluded, "occluded.previous", |label| f32::from(u8::from(label.occluded[1]))),
+/// The numbers of each label, in the order in which its row of [`AOVS`](crate::aovs::AOVS) names the channels.
+static VALUES: &[(Aov, &[Value])] = &[
+    (Aov::Normal, &[Float(|of| of.normal.x), Float(|of| of.normal.y), Float(|of| of.normal.z)]),
+    (
+        Aov::CameraNormal,
+        &[Float(|of| of.camera_normal.x), Float(|of| of.camera_normal.y), Float(|of| of.camera_normal.z)],
+    ),
+    (Aov::Depth, &[Float(|of| of.depth)]),
+    (Aov::ZDepth, &[Float(|of| of.z_depth)]),
+    (Aov::Ids, &[Integer(|of| of.object), Integer(|of| of.material)]),
+    (Aov::Instance, &[Integer(|of| of.instance)]),
+    (Aov::Category, &[Integer(|of| of.category)]),
+    (Aov::Position, &[Float(|of| of.position.x), Float(|of| of.position.y), Float(|of| of.position.z)]),
+    (Aov::Uv, &[Float(|of| of.uv.x), Float(|of| of.uv.y)]),
+    (Aov::Primitive, &[Integer(|of| of.primitive)]),
+    (Aov::Barycentric, &[Float(|of| of.barycentric[0]), Float(|of| of.barycentric[1])]),
+    (Aov::Motion, &[Float(|of| of.motion[0].x), Float(|of| of.motion[0].y)]),
+    (Aov::BackwardMotion, &[Float(|of| of.motion[1].x), Float(|of| of.motion[1].y)]),
+    (Aov::Occluded, &[Float(|of| truth(of.occluded[0])), Float(|of| truth(of.occluded[1]))]),
 ];
+
+fn truth(is_true: bool) -> f32 {
+    f32::from(u8::from(is_true))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_label_has_a_number_for_each_channel() {
+        assert!(VALUES.iter().map(|(aov, _)| *aov).eq(Aov::labels()));
+        for (aov, values) in VALUES {
+            assert_eq!(values.len(), aov.row().channels.len(), "{aov:?}");
+        }
+    }
+}

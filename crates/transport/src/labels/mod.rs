@@ -25,7 +25,7 @@ use bilux_math::parallel::{install, map};
 use bilux_math::{DVec2, Mat4, Vec3};
 use bilux_pictures::Picture;
 use bilux_scene::{Camera, Scene, Tracer};
-use channels::{CHANNELS, Channel, Label, Value};
+use channels::{Channel, Label, Value, channels};
 use flow::Flow;
 pub use flow::Moment;
 pub use silhouettes::{Mask, Silhouette, silhouettes};
@@ -66,7 +66,7 @@ pub fn labels(
         flows: [wanted.next, wanted.previous].map(|moment| Some(Flow::new(&rays, moment?))),
         follows: wanted.aovs.contains(&Aov::Occluded),
         to_camera: camera.matrices(scene.shutter()[0]).to_camera,
-        channels: CHANNELS.iter().filter(|channel| wanted.aovs.contains(&channel.aov)).collect(),
+        channels: channels(wanted.aovs),
         rays,
         wanted,
     };
@@ -85,7 +85,7 @@ struct Look<'a> {
     /// Whether it is asked what is hidden there.
     follows: bool,
     to_camera: Mat4,
-    channels: Vec<&'static Channel>,
+    channels: Vec<Channel>,
 }
 
 impl Look<'_> {
@@ -157,9 +157,9 @@ impl Look<'_> {
                 }
             }
             match channel.value {
-                Value::Integer(_) => picture.push_integer_plane(channel.name, plane)?,
+                Value::Integer(_) => picture.push_integer_plane(&*channel.name, plane)?,
                 Value::Float(_) => {
-                    picture.push_channel(channel.name, plane.into_iter().map(f32::from_bits).collect())?;
+                    picture.push_channel(&*channel.name, plane.into_iter().map(f32::from_bits).collect())?;
                 }
             }
         }

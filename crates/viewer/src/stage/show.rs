@@ -41,7 +41,7 @@ impl Shown {
         match self {
             Shown::Picture => "picture",
             Shown::Visits => VISITS,
-            Shown::Layer(aov) => AOVS.iter().find(|row| row.aov == aov).map_or("", |row| row.entry.name),
+            Shown::Layer(aov) => aov.row().entry.name,
         }
     }
 

@@ -12,7 +12,7 @@ use bilux::pictures::WriteOptions;
 use bilux::pictures::formats::format_of_path;
 use bilux::scene::SceneError;
 use bilux::strategies::{Light, picture, sheet};
-use bilux::transport::aovs::{self, AOVS, Aov};
+use bilux::transport::aovs::{self, Aov};
 use bilux::transport::{Interval, Strategies, integrators, strategies::MAX_EDGES};
 use bilux::{ExtraLayers, Job, Outcome};
 use std::path::{Path, PathBuf};
@@ -53,13 +53,12 @@ pub fn check(arguments: &Render) -> anyhow::Result<()> {
 
 /// The outputs that become layers of the picture.
 pub fn layers(arguments: &Render) -> Vec<Aov> {
-    Aov::ALL_LAYERS.into_iter().filter(|&aov| wants(arguments, aov)).collect()
+    Aov::layers().filter(|&aov| wants(arguments, aov)).collect()
 }
 
 /// True if this output was asked for.
 pub fn wants(arguments: &Render, aov: Aov) -> bool {
-    arguments.labels && aov.is_label()
-        || arguments.aov.iter().any(|name| AOVS.iter().any(|row| row.entry.name == name && row.aov == aov))
+    arguments.labels && aov.is_label() || arguments.aov.iter().any(|name| name == aov.row().entry.name)
 }
 
 /// Layers that a render keeps for its outputs while it takes samples.

@@ -32,7 +32,7 @@ impl Labelled {
 
     /// With the next frame and the previous one.
     pub fn between(scene: &Scene, settings: &RenderSettings, others: [Option<Moment>; 2]) -> Labelled {
-        let aovs: Vec<Aov> = Aov::labels().map(|row| row.aov).collect();
+        let aovs: Vec<Aov> = Aov::labels().collect();
         let [next, previous] = others;
         let wanted = Wanted { aovs: &aovs, next, previous, ..Wanted::default() };
         let found = labels(scene, &*scene.cameras()[0].1, settings, &wanted, &Silent).unwrap().unwrap();
