@@ -184,6 +184,7 @@ pub(crate) fn cluster(_: &[String]) -> Result<()> {
 /// Builds the package with the development profile, and installs it.
 fn install(builders: &Environment, testers: &Environment) -> Result<()> {
     let wheel = build(builders, &["--profile", "dev"], &target_folder().join("python/wheels"))?;
+    emptied(testers)?;
     let mut install = testers.python();
     run_process(
         install.args(["-m", "pip", "install", "--quiet", "--no-deps", "--force-reinstall"]).arg(&wheel),
@@ -197,15 +198,7 @@ fn place(builders: &Environment, testers: &Environment) -> Result<()> {
         // Elsewhere it takes more than cargo to link a module of Python.
         return install(builders, testers);
     }
-    let ask = ["-c", "import sysconfig; print(sysconfig.get_path('platlib'))"];
-    let site = PathBuf::from(output(testers.python().args(ask))?.trim());
-    for entry in fs::read_dir(&site).with_context(|| format!("cannot list {}", site.display()))?.flatten() {
-        let name = entry.file_name().to_string_lossy().into_owned();
-        if name == "bilux" || name.starts_with("bilux-") && name.ends_with(".dist-info") {
-            fs::remove_dir_all(entry.path())
-                .with_context(|| format!("cannot remove {}", entry.path().display()))?;
-        }
-    }
+    let site = emptied(testers)?;
     let package = root().join(PACKAGE);
     let placed = site.join("bilux");
     copy(&package.join("python/bilux"), &placed)?;
@@ -217,6 +210,20 @@ fn place(builders: &Environment, testers: &Environment) -> Result<()> {
     maturin.args(["-m", "maturin", "pep517", "write-dist-info", "--manifest-path"]);
     maturin.arg(package.join("Cargo.toml")).arg("--metadata-directory").arg(&site);
     output(maturin.arg("--interpreter").arg(&testers.interpreter)).map(drop)
+}
+
+/// Folder of an environment's packages, without ours: pip refuses to remove a package that [`place`] has put there.
+fn emptied(testers: &Environment) -> Result<PathBuf> {
+    let ask = ["-c", "import sysconfig; print(sysconfig.get_path('platlib'))"];
+    let site = PathBuf::from(output(testers.python().args(ask))?.trim());
+    for entry in fs::read_dir(&site).with_context(|| format!("cannot list {}", site.display()))?.flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if name == "bilux" || name.starts_with("bilux-") && name.ends_with(".dist-info") {
+            fs::remove_dir_all(entry.path())
+                .with_context(|| format!("cannot remove {}", entry.path().display()))?;
+        }
+    }
+    Ok(site)
 }
 
 /// Copies a folder of modules.
