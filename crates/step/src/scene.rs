@@ -20,9 +20,9 @@ pub(super) const EXTENSIONS: &[&str] = &["step", "stp", "p21"];
 pub(super) fn scene(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
     let mut table = parse(reading, source.bytes, source.name)?;
     let mut sink = Sink::for_bare_files();
-    sink.oddities = table.take_faults();
+    sink.diagnostics = table.take_faults();
     let styles = Styles::of_file(&table);
-    let (shapes, unit) = placed(reading, &table, &styles, &mut sink.oddities)?;
+    let (shapes, unit) = placed(reading, &table, &styles, &mut sink.diagnostics)?;
     let mut builder =
         Builder { table: &table, styles: &styles, sink, made: HashMap::new(), looks: HashMap::new() };
     for shape in &shapes {
@@ -36,7 +36,7 @@ pub(super) fn scene(reading: &mut Reading, source: &Source) -> Result<SceneBuild
     }
     if let [(_, id), ..] = elsewhere[..] {
         let what = format!("parts in other files ({})", listed(&elsewhere));
-        sink.oddities.not_shown(&what, || table.span(id));
+        sink.diagnostics.not_shown(&what, || table.span(id));
     }
     sink.scene.unit = unit;
     sink.scene.written_by = written_by(&table);
@@ -113,7 +113,7 @@ impl Builder<'_, '_> {
     fn add(&mut self, reading: &mut Reading, shape: &Placed) -> Result<(), FormatError> {
         let Some(place) = Transform::from_matrix(shape.place) else {
             let at = || self.table.span(shape.item);
-            self.sink.oddities.note("a transform flattens a part, which is left out", at);
+            self.sink.diagnostics.note("a transform flattens a part, which is left out", at);
             return Ok(());
         };
         if !self.made.contains_key(&shape.item) {
@@ -159,7 +159,7 @@ impl Builder<'_, '_> {
             let what = format!(
                 "{lost} of {faces} faces, whose boundary does not fit their surface or which are malformed"
             );
-            self.sink.oddities.not_shown(&what, || whole_file(&self.table.file()));
+            self.sink.diagnostics.not_shown(&what, || whole_file(&self.table.file()));
         }
         self.sink
     }

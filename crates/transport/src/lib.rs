@@ -68,4 +68,4 @@ pub use schedule::progress::{Progress, Silent};
 pub use schedule::rendered::Rendered;
 pub use schedule::settings::{PixelAnchor, RenderSettings, Stop};
 pub use schedule::stop::{NoiseMeter, Reached};
-pub use techniques::way::LengthBins;
+pub use techniques::optical_path::LengthBins;

@@ -16,18 +16,18 @@ const ASPECT: f64 = 4.0 / 3.0;
 /// Adds the cameras of a node.
 pub(super) fn place(placed: &Placed, posed: &Posed, sink: &mut Sink) -> Result<(), FormatError> {
     for instance in placed.node.children_named("instance_camera") {
-        let found = posed.document.referred(instance, "url", &mut sink.oddities);
+        let found = posed.document.referred(instance, "url", &mut sink.diagnostics);
         let Some(camera) = found else { continue };
         let optics = camera.path(&["optics", "technique_common"]);
         let kinds = ["perspective", "orthographic"];
         let projection = kinds.iter().find_map(|kind| optics?.child(kind));
         let Some(projection) = projection else {
-            sink.oddities.note("a camera has neither kind of projection: left out", || camera.at());
+            sink.diagnostics.note("a camera has neither kind of projection: left out", || camera.at());
             continue;
         };
         let direction = |axis: DVec3| placed.world.transform_vector3(axis).try_normalize();
         let Some((forward, up)) = direction(DVec3::NEG_Z).zip(direction(DVec3::Y)) else {
-            sink.oddities.note("a camera's node has a scale of zero: left out", || camera.at());
+            sink.diagnostics.note("a camera's node has a scale of zero: left out", || camera.at());
             continue;
         };
         let position = placed.world.w_axis.truncate();

@@ -5,7 +5,7 @@ use super::settings::Settings;
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 use bilux_import::bytes::spellings::percent_decoded;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::Source;
 use std::collections::HashMap;
 use std::path::Path;
@@ -24,7 +24,7 @@ impl<'d> Document<'d> {
         root: Element<'d>,
         source: &Source<'d>,
         budget: &mut Budget,
-        oddities: &mut Oddities,
+        diagnostics: &mut Diagnostics,
     ) -> Result<Document<'d>, FormatError> {
         if root.name() != "COLLADA" {
             let name = bilux_import::input::names::shortened(root.name());
@@ -36,7 +36,7 @@ impl<'d> Document<'d> {
             budget.take::<(&str, Element)>(1, source.name)?;
             ids.entry(id).or_insert(element);
         }
-        let settings = Settings::read(root, oddities);
+        let settings = Settings::read(root, diagnostics);
         Ok(Document { root, settings, folder: source.folder, ids })
     }
 
@@ -57,7 +57,7 @@ impl<'d> Document<'d> {
         &self,
         from: Element<'d>,
         attribute: &str,
-        oddities: &mut Oddities,
+        diagnostics: &mut Diagnostics,
     ) -> Option<Element<'d>> {
         let uri = from.attribute(attribute).unwrap_or_default();
         let found = self.target(uri);
@@ -68,7 +68,7 @@ impl<'d> Document<'d> {
             } else {
                 format!("what <{}> refers to does not exist", from.name())
             };
-            oddities.note(&what, || from.at());
+            diagnostics.note(&what, || from.at());
         }
         found
     }

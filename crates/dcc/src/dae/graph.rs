@@ -7,7 +7,7 @@ use super::settings::Frame;
 use super::transforms::local;
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_math::{DMat4, DVec3};
 use roxmltree::NodeId;
 use std::collections::HashMap;
@@ -40,23 +40,23 @@ impl<'d> Graph<'d> {
         posed: &Posed<'_, 'd>,
         origin: DVec3,
         budget: &mut Budget,
-        oddities: &mut Oddities,
+        diagnostics: &mut Diagnostics,
     ) -> Result<Graph<'d>, FormatError> {
         let document = posed.document;
         // An asset is of the element that it is in. [Collada 1.4.1, asset]
         let mut frame = document.settings.frame;
         let library = document.root.children_named("library_visual_scenes");
         for around in library.filter(|library| library.children().any(|child| child.key() == scene.key())) {
-            frame = frame.within(around, oddities);
+            frame = frame.within(around, diagnostics);
         }
-        frame = frame.within(scene, oddities);
+        frame = frame.within(scene, diagnostics);
         let to_world = DMat4::from_translation(-origin) * frame.to_world();
         let mut graph = Graph { nodes: Vec::new(), places: HashMap::new() };
         // The nodes between the scene and the current one.
         let mut open: Vec<NodeId> = Vec::new();
         let mut waiting: Vec<Waiting> = Vec::new();
         let first = Parent { world: to_world, frame, is_visible: true, depth: 0 };
-        push_children(scene, first, document, &mut waiting, oddities);
+        push_children(scene, first, document, &mut waiting, diagnostics);
         while let Some((node, parent)) = waiting.pop() {
             let depth = parent.depth;
             open.truncate(depth);
@@ -70,19 +70,19 @@ impl<'d> Graph<'d> {
             }
             open.push(node.key());
             budget.take::<(Placed, [usize; 6], [(Element, DMat4); 1])>(1, node.file())?;
-            let frame = parent.frame.within(node, oddities);
+            let frame = parent.frame.within(node, diagnostics);
             let world = parent.world * parent.frame.from(frame) * local(node, posed, budget)?;
             if !world.is_finite() {
                 return Err(node.error("the transform of this node overflows to numbers that are not finite"));
             }
             let is_visible = parent.is_visible && !is_hidden(node);
             if parent.is_visible && !is_visible {
-                oddities.remark("a node is hidden", || node.at());
+                diagnostics.remark("a node is hidden", || node.at());
             }
             graph.places.entry(node.key()).or_insert(graph.nodes.len());
             graph.nodes.push(Placed { node, world, frame, is_visible });
             let around = Parent { world, frame, is_visible, depth: depth + 1 };
-            push_children(node, around, document, &mut waiting, oddities);
+            push_children(node, around, document, &mut waiting, diagnostics);
         }
         Ok(graph)
     }
@@ -111,14 +111,14 @@ fn push_children<'d>(
     parent: Parent,
     document: &Document<'d>,
     waiting: &mut Vec<Waiting<'d>>,
-    oddities: &mut Oddities,
+    diagnostics: &mut Diagnostics,
 ) {
     let first = waiting.len();
     for child in within.children() {
         let node = match child.name() {
             "node" => Some(child),
             "instance_node" => {
-                document.referred(child, "url", oddities).filter(|found| found.name() == "node")
+                document.referred(child, "url", diagnostics).filter(|found| found.name() == "node")
             }
             _ => None,
         };

@@ -34,7 +34,7 @@ pub(super) fn place<'d>(
     sink: &mut Sink,
 ) -> Result<(), FormatError> {
     for instance in placed.node.children_named("instance_light") {
-        let found = posed.document.referred(instance, "url", &mut sink.oddities);
+        let found = posed.document.referred(instance, "url", &mut sink.diagnostics);
         let Some(element) = found.and_then(|light| light.path(&["technique_common"])?.children().next())
         else {
             continue;
@@ -42,11 +42,11 @@ pub(super) fn place<'d>(
         let at = element.at();
         let colour = colour(element, posed)?;
         if colour.is_black() {
-            sink.oddities.remark("a light that is switched off is left out", || at);
+            sink.diagnostics.remark("a light that is switched off is left out", || at);
             continue;
         }
         let Some(forward) = placed.world.transform_vector3(DVec3::NEG_Z).try_normalize() else {
-            sink.oddities.note("a light's node has a scale of zero: left out", || at);
+            sink.diagnostics.note("a light's node has a scale of zero: left out", || at);
             continue;
         };
         let position = placed.world.w_axis.truncate();
@@ -57,7 +57,7 @@ pub(super) fn place<'d>(
             "point" => lamp.point(middle, sink),
             "spot" => lamp.spot(middle, sink),
             _ => {
-                sink.oddities.not_shown("lights of an unknown kind", || lamp.at.clone());
+                sink.diagnostics.not_shown("lights of an unknown kind", || lamp.at.clone());
                 continue;
             }
         };
@@ -127,7 +127,7 @@ impl Lamp<'_, '_> {
             return (self.colour * (PI * unit * unit / quadratic) as f32).clamp(0.0, 1e12);
         }
         let what = "a light without quadratic decay has it here, and is as bright as stated in the middle of the scene";
-        sink.oddities.note(what, || self.at.clone());
+        sink.diagnostics.note(what, || self.at.clone());
         let weaker = constant + units * (linear + units * quadratic);
         let weaker = if weaker > 0.0 { weaker } else { 1.0 };
         (self.colour * (PI / weaker * metres * metres).min(1e12) as f32).clamp(0.0, 1e12)

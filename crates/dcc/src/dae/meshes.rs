@@ -49,7 +49,7 @@ impl<'d> Meshes<'d> {
             if !is_controller && instance.name() != "instance_geometry" {
                 continue;
             }
-            let found = posed.document.referred(instance, "url", &mut sink.oddities);
+            let found = posed.document.referred(instance, "url", &mut sink.diagnostics);
             let Some(target) = found else { continue };
             let made = match self.made.get(&target.key()) {
                 Some(made) => made.clone(),
@@ -61,7 +61,7 @@ impl<'d> Meshes<'d> {
                     made
                 }
             };
-            let own = placed.frame.within(target, &mut sink.oddities);
+            let own = placed.frame.within(target, &mut sink.diagnostics);
             let world = placed.world * placed.frame.from(own);
             let world = if made.is_in_world { DMat4::IDENTITY } else { world };
             self.place_parts(&made, &world, instance, placed.node, posed, reading, sink)?;
@@ -84,13 +84,13 @@ impl<'d> Meshes<'d> {
         let name = node.label();
         let each = size_of::<[Object; 2]>() + name.len();
         reading.budget.take_bytes((each * made.parts.len()) as u64, node.file())?;
-        let bindings = Bindings::of(instance, posed.document, &mut sink.oddities);
+        let bindings = Bindings::of(instance, posed.document, &mut sink.diagnostics);
         for part in &made.parts {
             let worn = bindings.worn(&made.symbols[part.material], posed.document);
             let material = self.materials.index(worn, posed, reading, sink)?;
             let Some((mesh, motion)) = flat::placed(&part.mesh, world, &mut reading.budget, node.file())?
             else {
-                sink.oddities.remark("a node with a scale of zero is not shown", || node.at());
+                sink.diagnostics.remark("a node with a scale of zero is not shown", || node.at());
                 continue;
             };
             let object = Object::new(&name, mesh, material);
@@ -112,7 +112,8 @@ fn make<'d>(
 ) -> Result<Made<'d>, FormatError> {
     let (file, spent) = (target.file(), reading.budget.spent());
     let crease_angle = reading.crease_angle;
-    let mut workshop = Workshop { budget: &mut reading.budget, oddities: &mut sink.oddities, crease_angle };
+    let mut workshop =
+        Workshop { budget: &mut reading.budget, diagnostics: &mut sink.diagnostics, crease_angle };
     let shaped = controllers::shaped(target, instance, placed, posed, graph, &mut workshop)?;
     let Some(Shaped { mesh, is_in_world }) = shaped else {
         let found =

@@ -20,7 +20,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     let text = String::from_utf8_lossy(source.bytes);
     let xml = Xml::parse(&text, source.name, &mut reading.budget)?;
     let mut sink = Sink::for_bare_files();
-    let document = Document::load(Element::root(&xml), source, &mut reading.budget, &mut sink.oddities)?;
+    let document = Document::load(Element::root(&xml), source, &mut reading.budget, &mut sink.diagnostics)?;
     sink.scene.written_by.clone_from(&document.settings.tool);
     note_unused(&document, &mut sink);
     let Some(scene) = shown_scene(&document, &mut sink) else {
@@ -40,12 +40,12 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
 fn shown_scene<'d>(document: &Document<'d>, sink: &mut Sink) -> Option<Element<'d>> {
     let instance = document.root.path(&["scene", "instance_visual_scene"]);
     let is_scene = |element: &Element| element.name() == "visual_scene";
-    let stated = instance.and_then(|instance| document.referred(instance, "url", &mut sink.oddities));
+    let stated = instance.and_then(|instance| document.referred(instance, "url", &mut sink.diagnostics));
     let shown =
         stated.filter(is_scene).or_else(|| document.library("library_visual_scenes").find(is_scene))?;
     let mut others = document.library("library_visual_scenes").filter(is_scene);
     if let Some(other) = others.find(|other| other.key() != shown.key()) {
-        sink.oddities.not_shown("other scenes", || other.at());
+        sink.diagnostics.not_shown("other scenes", || other.at());
     }
     Some(shown)
 }
@@ -59,7 +59,7 @@ fn note_unused(document: &Document, sink: &mut Sink) {
             _ => continue,
         };
         if child.children().next().is_some() {
-            sink.oddities.not_used(what, || child.at());
+            sink.diagnostics.not_used(what, || child.at());
         }
     }
 }
@@ -74,9 +74,10 @@ fn place_all<'d>(
     sink: &mut Sink,
 ) -> Result<(), FormatError> {
     let wanted = reading.options.animation.as_deref();
-    let pose = Pose::read(document, time, wanted, &mut reading.budget, &mut sink.oddities)?;
+    let pose = Pose::read(document, time, wanted, &mut reading.budget, &mut sink.diagnostics)?;
     let posed = Posed { document, pose };
-    let graph = Graph::read(visual_scene, &posed, reading.origin, &mut reading.budget, &mut sink.oddities)?;
+    let graph =
+        Graph::read(visual_scene, &posed, reading.origin, &mut reading.budget, &mut sink.diagnostics)?;
     for placed in graph.nodes.iter().filter(|placed| placed.is_visible) {
         meshes.place(placed, &posed, &graph, reading, sink)?;
     }
@@ -95,7 +96,7 @@ fn place_all<'d>(
     let skins = controllers.filter(|controller| controller.child("skin").is_some());
     scene.inventory.skins = skins.map(Element::label).collect();
     if scene.objects.is_empty() && scene.lights.is_empty() {
-        sink.oddities.note("there is nothing to render in this file", || document.root.at());
+        sink.diagnostics.note("there is nothing to render in this file", || document.root.at());
     }
     Ok(())
 }

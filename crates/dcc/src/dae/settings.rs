@@ -3,7 +3,7 @@
 use super::element::Element;
 use bilux_import::bytes::float::parse_f64;
 use bilux_import::input::authors::program;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_math::{DMat3, DMat4, DVec3};
 
 /// Settings of a file, as its asset element states them.
@@ -36,14 +36,14 @@ impl Frame {
     const UNSTATED: Frame = Frame { axes: DMat3::IDENTITY, unit: 1.0 };
 
     /// Frame of an element in this one: as its own asset says, and as here where it says nothing.
-    pub(super) fn within(self, element: Element, oddities: &mut Oddities) -> Frame {
+    pub(super) fn within(self, element: Element, diagnostics: &mut Diagnostics) -> Frame {
         let Some(asset) = element.child("asset") else { return self };
         let stated = asset.child("unit").and_then(|unit| unit.attribute("meter"));
         let unit = stated.map(|meter| parse_f64(meter.trim().as_bytes()).unwrap_or(0.0)).unwrap_or(self.unit);
         let is_length = (1e-12..=1e12).contains(&unit);
         if !is_length {
             let what = "the unit is not the length of a unit that anybody has: it is read as a metre";
-            oddities.note(what, || element.at());
+            diagnostics.note(what, || element.at());
         }
         let axes = match asset.child("up_axis").map(Element::text) {
             Some("Z_UP") => DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y),
@@ -69,14 +69,14 @@ impl Frame {
 }
 
 impl Settings {
-    pub(super) fn read(root: Element, oddities: &mut Oddities) -> Settings {
+    pub(super) fn read(root: Element, diagnostics: &mut Diagnostics) -> Settings {
         let asset = root.child("asset");
-        let frame = Frame::UNSTATED.within(root, oddities);
+        let frame = Frame::UNSTATED.within(root, diagnostics);
         let has_inverted_opacity = has_inverted_opacity(root);
         if has_inverted_opacity {
             let what = "wholly transparent materials are read as opaque, and all others the other way round too, as the \
                         programs mean it that write this";
-            oddities.note(what, || root.at());
+            diagnostics.note(what, || root.at());
         }
         let contributors = asset.into_iter().flat_map(|asset| asset.children_named("contributor"));
         let tool = contributors.filter_map(|one| one.child("authoring_tool")).map(Element::text).next();

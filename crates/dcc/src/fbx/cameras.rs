@@ -4,7 +4,7 @@ use super::attributes::{self, Attribute};
 use super::document::{Properties, display_name};
 use super::graph::{Graph, Placed};
 use super::posed::Posed;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_math::DVec3;
 use bilux_math::transcendental::{atan2_f64, tan_f64};
 use bilux_scene::Spec;
@@ -20,7 +20,7 @@ pub(super) fn camera(
     placed: &Placed,
     posed: &Posed,
     graph: &Graph,
-    oddities: &mut Oddities,
+    diagnostics: &mut Diagnostics,
 ) -> Option<CameraSpec> {
     let Attribute { properties, index } = attributes::of_kind("Camera", placed.model, posed)?;
     let object = posed.document.object(placed.model);
@@ -28,7 +28,7 @@ pub(super) fn camera(
     let forward = attributes::direction(placed, DVec3::X, posed, graph);
     let up = placed.world.transform_vector3(DVec3::Y).try_normalize();
     let (Some(forward), Some(up)) = (forward, up) else {
-        oddities.note("a camera's node has a scale of zero: left out", || at);
+        diagnostics.note("a camera's node has a scale of zero: left out", || at);
         return None;
     };
     let position = placed.world.w_axis.truncate();

@@ -5,7 +5,7 @@ use super::posed::Posed;
 use super::transform::{Inherited, Local, geometric};
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_math::{DMat4, DVec3};
 use std::collections::HashMap;
 
@@ -35,7 +35,7 @@ impl Graph {
         posed: &Posed,
         origin: DVec3,
         budget: &mut Budget,
-        oddities: &mut Oddities,
+        diagnostics: &mut Diagnostics,
     ) -> Result<Graph, FormatError> {
         let document = posed.document;
         let to_world = DMat4::from_translation(-origin) * document.settings.to_world;
@@ -46,7 +46,7 @@ impl Graph {
         while let Some((model, parent, is_parent_visible)) = waiting.pop() {
             let node = document.object(model).node;
             if graph.order.contains_key(&model) {
-                oddities
+                diagnostics
                     .note("a node has two parents, or is its own ancestor: its first place counts", || {
                         node.at()
                     });
@@ -60,7 +60,7 @@ impl Graph {
             let inherits = properties.integer("Visibility Inheritance").unwrap_or(1) != 0;
             let is_visible = own_visibility && (is_parent_visible || !inherits);
             if !is_visible {
-                oddities.remark("a node is hidden", || node.at());
+                diagnostics.remark("a node is hidden", || node.at());
             }
             let world = to_world * inherited.matrix;
             if !world.is_finite() {
@@ -73,7 +73,7 @@ impl Graph {
             for (number, &child) in children.iter().enumerate().rev() {
                 let is_left_out = shows_one && number > 0;
                 if is_left_out {
-                    oddities.remark("of the levels of detail of a group the first is shown", || node.at());
+                    diagnostics.remark("of the levels of detail of a group the first is shown", || node.at());
                 }
                 waiting.push((child, inherited, is_visible && !is_left_out));
             }
@@ -83,7 +83,7 @@ impl Graph {
             .any(|index| document.class(index) == b"Model" && !graph.order.contains_key(&index))
         {
             let what = "some nodes are their own ancestors, and are left out";
-            oddities.note(what, || document.tree.whole());
+            diagnostics.note(what, || document.tree.whole());
         }
         Ok(graph)
     }

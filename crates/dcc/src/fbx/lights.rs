@@ -52,11 +52,11 @@ pub(super) fn place(
     let number = |name: &str, default: f64| properties.number(name).unwrap_or(default);
     let intensity = number("Intensity", 100.0).max(0.0) / 100.0;
     if number("CastLight", 1.0) == 0.0 || intensity == 0.0 {
-        sink.oddities.remark("a light that is switched off is left out", || at);
+        sink.diagnostics.remark("a light that is switched off is left out", || at);
         return;
     }
     let Some(forward) = attributes::direction(placed, DVec3::NEG_Y, posed, graph) else {
-        sink.oddities.note("a light's node has a scale of zero: left out", || at);
+        sink.diagnostics.note("a light's node has a scale of zero: left out", || at);
         return;
     };
     let Settings { is_of_blender, lamps_have_reach, unit, .. } = document.settings;
@@ -82,7 +82,7 @@ pub(super) fn place(
         2 => lamp.spot(middle, sink),
         3 => lamp.area(placed, middle, sink),
         _ => {
-            sink.oddities.not_shown("volume lights", || lamp.at.clone());
+            sink.diagnostics.not_shown("volume lights", || lamp.at.clone());
             return;
         }
     };
@@ -109,7 +109,7 @@ impl Lamp<'_> {
             return self.colour * (PI * self.intensity * self.reach * self.reach).min(1e12) as f32;
         }
         let what = "a light without quadratic decay has it here, and is as bright as stated in the middle of the scene";
-        sink.oddities.note(what, || self.at.clone());
+        sink.diagnostics.note(what, || self.at.clone());
         let weaker = match self.decay {
             LINEAR => units,
             CUBIC => units * units * units,
@@ -147,7 +147,8 @@ impl Lamp<'_> {
     /// A square that is two units wide, as its node's scale makes it, with the same light as a point.
     fn area(&self, placed: &Placed, middle: DVec3, sink: &mut Sink) -> Spec {
         if self.properties.integer("AreaLightShape") == Some(1) {
-            sink.oddities.note("an area light in the shape of a sphere is a square here", || self.at.clone());
+            sink.diagnostics
+                .note("an area light in the shape of a sphere is a square here", || self.at.clone());
         }
         let [u, v] = [DVec3::X, DVec3::Z].map(|axis| placed.world.transform_vector3(axis) * 2.0);
         let area = u.cross(v).length();

@@ -46,7 +46,7 @@ impl<'d> Meshes<'d> {
     ) -> Result<(), FormatError> {
         let document = posed.document;
         for geometry in geometries(document, placed.model) {
-            let deformers = Deformers::of(geometry, posed, reading, &mut sink.oddities)?;
+            let deformers = Deformers::of(geometry, posed, reading, &mut sink.diagnostics)?;
             // What bones move is in world space, wherever its node is.
             let world = if deformers.has_skin() { DMat4::IDENTITY } else { placed.world * placed.geometric };
             let parts = match self.parts.get(&geometry).filter(|_| deformers.is_empty()) {
@@ -89,7 +89,7 @@ impl<'d> Meshes<'d> {
             let material = self.materials.index(worn, posed, reading, sink)?;
             let Some((mesh, motion)) = flat::placed(&part.mesh, world, &mut reading.budget, document.file())?
             else {
-                sink.oddities.remark("a node with a scale of zero is not shown", || node.at());
+                sink.diagnostics.remark("a node with a scale of zero is not shown", || node.at());
                 continue;
             };
             let object = Object::new(&name, mesh, material);
@@ -125,7 +125,7 @@ impl<'d> Meshes<'d> {
         let spent = reading.budget.spent();
         let crease_angle = reading.crease_angle;
         let mut workshop =
-            Workshop { budget: &mut reading.budget, oddities: &mut sink.oddities, crease_angle };
+            Workshop { budget: &mut reading.budget, diagnostics: &mut sink.diagnostics, crease_angle };
         let has_second = second_set(object.node).and_then(|(_, name)| name);
         let has_second = has_second.is_some_and(|name| self.named_sets.contains(name));
         let made = match geometry::read(object.node, display_name(object.name), has_second, &mut workshop)? {
@@ -136,7 +136,7 @@ impl<'d> Meshes<'d> {
                         let (cage, materials) = subdivision::cage(object.node, &geometry, &mut workshop)?;
                         return Ok(waiting(cage, materials, &geometry.name, object.node, reading));
                     }
-                    workshop.oddities.not_shown("subdivision of meshes that move", || object.node.at());
+                    workshop.diagnostics.not_shown("subdivision of meshes that move", || object.node.at());
                 }
                 geometry.add_normals(&mut workshop, document.file())?;
                 parts(geometry, &mut workshop, document.file())?
@@ -144,7 +144,7 @@ impl<'d> Meshes<'d> {
             None => {
                 let kind =
                     if object.kind.is_empty() { &b"a geometry without polygons"[..] } else { object.kind };
-                workshop.oddities.not_shown(&display_name(kind), || object.node.at());
+                workshop.diagnostics.not_shown(&display_name(kind), || object.node.at());
                 Vec::new()
             }
         };

@@ -3,7 +3,7 @@
 use super::animation::Pose;
 use super::document::{Document, Index, Properties};
 use bilux_import::FormatError;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::Reading;
 
 /// A document with the values that its animation gives to properties.
@@ -18,10 +18,10 @@ impl<'d> Posed<'d> {
         document: &'d Document<'d>,
         time: f32,
         reading: &mut Reading,
-        oddities: &mut Oddities,
+        diagnostics: &mut Diagnostics,
     ) -> Result<Posed<'d>, FormatError> {
         let wanted = reading.options.animation.as_deref();
-        let pose = Pose::read(document, time, wanted, &mut reading.budget, oddities)?;
+        let pose = Pose::read(document, time, wanted, &mut reading.budget, diagnostics)?;
         Ok(Posed { document, pose })
     }
 

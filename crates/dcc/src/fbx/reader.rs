@@ -16,7 +16,7 @@ use bilux_scene::SceneBuilder;
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
     let mut sink = Sink::for_bare_files();
     let tree = Tree::read(source, &mut reading.budget)?;
-    let document = Document::load(&tree, source, &mut reading.budget, &mut sink.oddities)?;
+    let document = Document::load(&tree, source, &mut reading.budget, &mut sink.diagnostics)?;
     sink.scene.written_by.clone_from(&document.settings.creator);
     let mut meshes = Meshes::new(&document);
     place_all(&document, reading.options.time, &mut meshes, reading, &mut sink)?;
@@ -36,8 +36,8 @@ fn place_all<'d>(
     reading: &mut Reading,
     sink: &mut Sink,
 ) -> Result<(), FormatError> {
-    let posed = Posed::read(document, time, reading, &mut sink.oddities)?;
-    let graph = Graph::read(&posed, reading.origin, &mut reading.budget, &mut sink.oddities)?;
+    let posed = Posed::read(document, time, reading, &mut sink.diagnostics)?;
+    let graph = Graph::read(&posed, reading.origin, &mut reading.budget, &mut sink.diagnostics)?;
     for placed in graph.nodes.iter().filter(|placed| placed.is_visible) {
         meshes.place(placed, &posed, &graph, reading, sink)?;
     }
@@ -48,7 +48,7 @@ fn place_all<'d>(
         ((bounds.min + bounds.max) * 0.5).as_dvec3()
     };
     for placed in &graph.nodes {
-        sink.scene.cameras.extend(cameras::camera(placed, &posed, &graph, &mut sink.oddities));
+        sink.scene.cameras.extend(cameras::camera(placed, &posed, &graph, &mut sink.diagnostics));
         if placed.is_visible {
             lights::place(placed, &posed, &graph, middle, reading.options.light_radius, sink);
         }
@@ -59,7 +59,7 @@ fn place_all<'d>(
     scene.inventory.skins = deform::skin_names(document);
     if scene.objects.is_empty() && scene.lights.is_empty() {
         let at = || document.tree.whole();
-        sink.oddities.note("there is nothing to render in this file", at);
+        sink.diagnostics.note("there is nothing to render in this file", at);
     }
     Ok(())
 }

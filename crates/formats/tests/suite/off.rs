@@ -45,7 +45,7 @@ fn normals_colours_and_uvs_come_in_this_order() {
 }
 
 #[test]
-fn oddities_that_can_be_drawn_give_a_warning() {
+fn diagnostics_that_can_be_drawn_give_a_warning() {
     let cases = [
         (
             SQUARE.replace("4 0 1 2 3", "4 0 1 2 3 red"),

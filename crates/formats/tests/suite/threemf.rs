@@ -329,7 +329,7 @@ fn broken_files_are_refused_with_their_place() {
 }
 
 #[test]
-fn oddities_that_can_be_drawn_give_a_warning() {
+fn diagnostics_that_can_be_drawn_give_a_warning() {
     let whole = model(&object(1, ""), &items(&[1]));
     let cases = [
         (

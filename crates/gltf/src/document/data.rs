@@ -5,23 +5,23 @@ use crate::document::json::JsonNode;
 use crate::document::json_document::Document;
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_scene::Span;
 
 /// Reads a document's data within the memory that is left, and notes what is odd about them.
 pub(crate) struct DataReader<'d, 'r> {
     pub(crate) document: &'d Document<'d>,
     pub(crate) budget: &'r mut Budget,
-    pub(crate) oddities: &'r mut Oddities,
+    pub(crate) diagnostics: &'r mut Diagnostics,
 }
 
 impl<'d, 'r> DataReader<'d, 'r> {
     pub(crate) fn new(
         document: &'d Document<'d>,
         budget: &'r mut Budget,
-        oddities: &'r mut Oddities,
+        diagnostics: &'r mut Diagnostics,
     ) -> DataReader<'d, 'r> {
-        DataReader { document, budget, oddities }
+        DataReader { document, budget, diagnostics }
     }
 
     /// The accessor that `index` names.
@@ -46,7 +46,7 @@ impl<'d, 'r> DataReader<'d, 'r> {
     }
 
     pub(crate) fn note(&mut self, what: &str, at: impl FnOnce() -> Span) {
-        self.oddities.note(what, at);
+        self.diagnostics.note(what, at);
     }
 }
 

@@ -45,7 +45,7 @@ impl Meshes {
         if let Some(parts) = self.parts.get(&key) {
             return Ok(parts.clone());
         }
-        let mut data = DataReader::new(posed.document, &mut reading.budget, &mut sink.oddities);
+        let mut data = DataReader::new(posed.document, &mut reading.budget, &mut sink.diagnostics);
         let joints = skin.map(|skin| Joints::read(skin, posed, &mut data)).transpose()?;
         let worn = NodeMesh { name: mesh.name(), weights: &weights, joints: joints.as_ref() };
         let mut parts = Vec::new();

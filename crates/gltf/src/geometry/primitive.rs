@@ -49,10 +49,10 @@ pub(crate) fn part<'d>(
     let mode = Mode::of(node)?;
     let attributes = node.need("attributes")?;
     let Some(position) = attributes.get("POSITION") else {
-        sink.oddities.note("a primitive has no POSITION and is left out", || node.at());
+        sink.diagnostics.note("a primitive has no POSITION and is left out", || node.at());
         return Ok(None);
     };
-    let mut data = DataReader::new(posed.document, &mut reading.budget, &mut sink.oddities);
+    let mut data = DataReader::new(posed.document, &mut reading.budget, &mut sink.diagnostics);
     let mut mesh = Mesh { name: worn.name.to_owned(), ..Mesh::default() };
     mesh.positions = vec3(data.attribute::<3>(position, None)?);
     let count = mesh.positions.len();
@@ -68,7 +68,7 @@ pub(crate) fn part<'d>(
     };
     let on = OnMesh { is_solid, has_alpha: !alphas.is_empty() };
     let material = materials.material(named, on, posed.document, reading, sink)?;
-    let mut data = DataReader::new(posed.document, &mut reading.budget, &mut sink.oddities);
+    let mut data = DataReader::new(posed.document, &mut reading.budget, &mut sink.diagnostics);
     directions(attributes, material, &mut mesh, &mut data)?;
     morph(node, worn.weights, &mut mesh, &mut data)?;
     if let Some(joints) = worn.joints {
@@ -253,7 +253,7 @@ fn note_unused(attributes: JsonNode, material: UsedMaterial, data: &mut DataRead
         let is_used = ATTRIBUTES.contains(&key) || used_uv(key) || is_skin || key.starts_with('_');
         // Unused sets of texture coordinates have no effect.
         if !is_used && !key.starts_with("TEXCOORD_") {
-            data.oddities.not_shown(&format!("{} of meshes", quoted(key.as_bytes())), || node.at());
+            data.diagnostics.not_shown(&format!("{} of meshes", quoted(key.as_bytes())), || node.at());
         }
     }
 }

@@ -68,7 +68,7 @@ impl Pose {
                 taken.extend(targets);
             } else if chosen.is_none() {
                 let what = "an animation is not played because an earlier one moves the same nodes; choose it by its name";
-                data.oddities.remark(what, || node.at());
+                data.diagnostics.remark(what, || node.at());
             }
             let name = node.name().to_owned();
             pose.animations.push(Animation { name, seconds, plays });

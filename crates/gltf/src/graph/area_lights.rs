@@ -33,7 +33,7 @@ pub(crate) fn place<'d>(
     let [_, up, forward] = axes.map(DVec3::normalize_or_zero);
     let right = forward.cross(up).normalize_or_zero();
     if radiance.is_black() || !(size > 0.0 && size.is_finite()) || right == DVec3::ZERO {
-        sink.oddities.note("a light without a size or without intensity is left out", || light.at());
+        sink.diagnostics.note("a light without a size or without intensity is left out", || light.at());
         return Ok(());
     }
     let up = right.cross(forward);

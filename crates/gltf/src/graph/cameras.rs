@@ -2,7 +2,7 @@
 
 use crate::document::json::JsonNode;
 use bilux_import::FormatError;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_math::{DMat4, DVec3};
 use bilux_scene::Spec;
 use bilux_scene::cameras::CameraSpec;
@@ -12,7 +12,7 @@ pub(crate) fn camera(
     camera: JsonNode,
     node: JsonNode,
     world: &DMat4,
-    oddities: &mut Oddities,
+    diagnostics: &mut Diagnostics,
 ) -> Result<Option<CameraSpec>, FormatError> {
     let kind = camera.need("type")?;
     let lens = camera.need(match kind.as_text()? {
@@ -27,7 +27,7 @@ pub(crate) fn camera(
     let name = if node.name().is_empty() { camera.name() } else { node.name() };
     let axis = |v: DVec3| world.transform_vector3(v).try_normalize();
     let (Some(forward), Some(up)) = (axis(DVec3::NEG_Z), axis(DVec3::Y)) else {
-        oddities.note("a camera's node has a scale of zero: left out", || node.at());
+        diagnostics.note("a camera's node has a scale of zero: left out", || node.at());
         return Ok(None);
     };
     let position = world.w_axis.truncate();
@@ -41,7 +41,7 @@ pub(crate) fn camera(
     if kind.as_text()? == "perspective" {
         let fov = lens.need("yfov")?.as_number()?.to_degrees();
         if !(0.01..=179.0).contains(&fov) {
-            oddities
+            diagnostics
                 .note("a camera's yfov is out of range: it is limited to 0.01 to 179 degrees", || lens.at());
         }
         spec.parameters.set("fov", fov.clamp(0.01, 179.0) as f32);
@@ -54,7 +54,7 @@ pub(crate) fn camera(
     } else {
         let half = lens.need("ymag")?.as_number()?.abs();
         if !(5e-10..=5e8).contains(&half) {
-            oddities.note("a camera's ymag is out of range: it is limited to 5e-10 to 5e8", || lens.at());
+            diagnostics.note("a camera's ymag is out of range: it is limited to 5e-10 to 5e8", || lens.at());
         }
         spec.parameters.set("height", (2.0 * half).clamp(1e-9, 1e9) as f32);
     }

@@ -3,7 +3,7 @@
 use crate::document::json::JsonNode;
 use crate::graph::nodes::Placed;
 use bilux_import::FormatError;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_math::{DVec3, Rgb};
 use bilux_scene::Spec;
 
@@ -15,7 +15,7 @@ pub(crate) fn light<'d>(
     user: JsonNode<'d>,
     placed: &Placed<'d>,
     radius: f32,
-    oddities: &mut Oddities,
+    diagnostics: &mut Diagnostics,
 ) -> Result<Option<Spec>, FormatError> {
     let index = user.need("light")?;
     let list = root.extension("KHR_lights_punctual");
@@ -24,7 +24,7 @@ pub(crate) fn light<'d>(
     };
     let (position, kind) = (placed.world.w_axis.truncate(), light.need("type")?);
     let Some(forward) = placed.world.transform_vector3(DVec3::NEG_Z).try_normalize() else {
-        oddities.note("a light's node has a scale of zero: left out", || placed.node.at());
+        diagnostics.note("a light's node has a scale of zero: left out", || placed.node.at());
         return Ok(None);
     };
     let colour = light.numbers::<3>("color")?.unwrap_or([1.0; 3]).map(|c| c.max(0.0) as f32);
@@ -59,12 +59,13 @@ pub(crate) fn light<'d>(
         }
     };
     if radius > 0.0 && spec.kind != "sphere" {
-        oddities.note("only point lights get a radius", || light.at());
+        diagnostics.note("only point lights get a radius", || light.at());
     }
     if light.get("range").is_some() {
-        oddities.note("a light's range is ignored: light falls off with the square of the distance", || {
-            light.at()
-        });
+        diagnostics
+            .note("a light's range is ignored: light falls off with the square of the distance", || {
+                light.at()
+            });
     }
     Ok(Some(Spec { span: light.at(), ..spec }))
 }

@@ -6,7 +6,7 @@ use crate::graph::animation::Pose;
 use crate::graph::nodes::Graph;
 use crate::materials::variants::Variants;
 use bilux_import::input::reading::Reading;
-use bilux_import::{FormatError, input::oddities::Oddities};
+use bilux_import::{FormatError, input::diagnostics::Diagnostics};
 
 /// Parts of a document that are read before anything is placed.
 pub(crate) struct Posed<'d> {
@@ -22,11 +22,11 @@ impl<'d> Posed<'d> {
         document: &'d Document<'d>,
         time: f32,
         reading: &mut Reading,
-        oddities: &mut Oddities,
+        diagnostics: &mut Diagnostics,
     ) -> Result<Posed<'d>, FormatError> {
         let options = reading.options;
         let variants = Variants::read(document.root, options.variant.as_deref())?;
-        let mut data = DataReader::new(document, &mut reading.budget, oddities);
+        let mut data = DataReader::new(document, &mut reading.budget, diagnostics);
         let pose = Pose::read(time, options.animation.as_deref(), &mut data)?;
         let graph = Graph::read(&pose, reading.origin, &mut data)?;
         Ok(Posed { document, variants, pose, graph })

@@ -113,11 +113,11 @@ impl<'a> Draft<'a, '_> {
 
     /// Counts something odd about the material.
     pub(crate) fn note(&mut self, what: &str, at: impl FnOnce() -> Span) {
-        self.textures.sink.oddities.note(what, at);
+        self.textures.sink.diagnostics.note(what, at);
     }
 
     /// Counts something that is no fault, and that changes nothing in the picture.
     pub(crate) fn remark(&mut self, what: &str, at: impl FnOnce() -> Span) {
-        self.textures.sink.oddities.remark(what, at);
+        self.textures.sink.diagnostics.remark(what, at);
     }
 }

@@ -36,7 +36,7 @@ pub(crate) fn is_solid<'d>(
             } else {
                 let what = "a transmissive material without a thickness, on an open mesh, is shown as a thin wall; \
                             --glass solid shows it as solid glass";
-                data.oddities.remark(what, || node.at());
+                data.diagnostics.remark(what, || node.at());
             }
             Ok(is_closed)
         }

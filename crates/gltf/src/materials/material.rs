@@ -90,7 +90,7 @@ fn used(draft: Draft, is_unlit: bool) -> UsedMaterial {
     let sink = draft.textures.sink;
     let is_second = |i: &usize| sink.scene.textures.get(*i).is_some_and(|texture| texture.second_uv);
     let normal_by_second = matches!(normal, Some(Value::Texture(i)) if is_second(&i));
-    let index = sink.scene.add_material(fitted(draft.spec, &mut sink.oddities));
+    let index = sink.scene.add_material(fitted(draft.spec, &mut sink.diagnostics));
     let (uv_sets, alpha) = (draft.uv_sets, draft.alpha);
     UsedMaterial { index, uv_sets, has_direction, normal_by_second, is_unlit, alpha }
 }

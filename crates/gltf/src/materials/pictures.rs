@@ -4,8 +4,8 @@ use crate::document::json::JsonNode;
 use crate::document::json_document::Document;
 use crate::document::uri::{self, Resource};
 use bilux_import::FormatError;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::images::SampleMeaning;
-use bilux_import::input::oddities::Oddities;
 use bilux_import::input::reading::Reading;
 use bilux_math::parallel::map;
 use bilux_pictures::{Limits, read_rgba8};
@@ -73,11 +73,11 @@ impl Pictures {
         is_data: bool,
         document: &Document<'d>,
         reading: &mut Reading,
-        oddities: &mut Oddities,
+        diagnostics: &mut Diagnostics,
     ) -> Result<Option<Named>, FormatError> {
         let Some(index) = source(texture) else {
             let what = "a texture has no readable picture and is replaced by a magenta checker";
-            oddities.note(what, || texture.at());
+            diagnostics.note(what, || texture.at());
             return Ok(None);
         };
         let image = document.named("images", index)?;
@@ -96,7 +96,7 @@ impl Pictures {
             Err(error) => {
                 let reason = error.without_place();
                 let what = format!("a texture is replaced by a magenta checker: {reason}");
-                oddities.note(&what, || image.at());
+                diagnostics.note(&what, || image.at());
                 None
             }
         };

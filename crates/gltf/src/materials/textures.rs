@@ -71,7 +71,7 @@ impl<'a> Textures<'a, '_> {
             Some(slot) => uv_sets[slot] = Some(set),
             None => {
                 let what = "a material uses three sets of texture coordinates, but only two are supported";
-                self.sink.oddities.note(what, || info.at());
+                self.sink.diagnostics.note(what, || info.at());
             }
         }
         let mut texture = match self.picture(node, taken.is_data)? {
@@ -101,7 +101,7 @@ impl<'a> Textures<'a, '_> {
     }
 
     fn picture(&mut self, texture: JsonNode<'a>, is_data: bool) -> Result<Option<Named>, FormatError> {
-        self.pictures.of_texture(texture, is_data, self.document, self.reading, &mut self.sink.oddities)
+        self.pictures.of_texture(texture, is_data, self.document, self.reading, &mut self.sink.diagnostics)
     }
 
     /// Adds a texture to the scene.

@@ -2,7 +2,7 @@
 
 use crate::document::json::JsonNode;
 use bilux_import::FormatError;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_scene::error::nearest_name;
 
 /// Extensions that are read, either fully or with a warning about what is not.
@@ -42,7 +42,7 @@ const KNOWN: &[&str] = &[
 const WITHOUT_VISIBLE_EFFECT: &[&str] = &["KHR_xmp", "KHR_xmp_json_ld"];
 
 /// Refuses a file that requires an unsupported extension, and warns about all others that are not supported.
-pub(crate) fn check(root: JsonNode, oddities: &mut Oddities) -> Result<(), FormatError> {
+pub(crate) fn check(root: JsonNode, diagnostics: &mut Diagnostics) -> Result<(), FormatError> {
     for name in root.list("extensionsRequired")? {
         let text = name.as_text()?;
         if !KNOWN.contains(&text) && !WITHOUT_VISIBLE_EFFECT.contains(&text) {
@@ -55,12 +55,12 @@ pub(crate) fn check(root: JsonNode, oddities: &mut Oddities) -> Result<(), Forma
             return Err(name.error(message));
         }
     }
-    note_unknown(root, oddities);
+    note_unknown(root, diagnostics);
     Ok(())
 }
 
 /// Looks for extensions at every place where they are used. The parser limits the nesting of the JSON.
-fn note_unknown(node: JsonNode, oddities: &mut Oddities) {
+fn note_unknown(node: JsonNode, diagnostics: &mut Diagnostics) {
     for (key, value) in node.entries() {
         if key == "extras" {
             continue;
@@ -69,11 +69,11 @@ fn note_unknown(node: JsonNode, oddities: &mut Oddities) {
             for (name, used) in value.entries() {
                 if !KNOWN.contains(&name) && !WITHOUT_VISIBLE_EFFECT.contains(&name) {
                     let what = format!("the extension {name} is not supported and is ignored");
-                    oddities.note(&what, || used.at());
+                    diagnostics.note(&what, || used.at());
                 }
             }
         }
-        note_unknown(value, oddities);
-        value.children().for_each(|item| note_unknown(item, oddities));
+        note_unknown(value, diagnostics);
+        value.children().for_each(|item| note_unknown(item, diagnostics));
     }
 }

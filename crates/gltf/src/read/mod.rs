@@ -32,7 +32,7 @@ pub(crate) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     let container = container::open(source)?;
     let mut sink = Sink::for_bare_files();
     for warning in &container.warnings {
-        sink.oddities.note(warning, || bilux_import::bytes::text::whole_file(source.name));
+        sink.diagnostics.note(warning, || bilux_import::bytes::text::whole_file(source.name));
     }
     let json = parse(reading, container.json, source)?;
     let root = JsonNode::root(&json, source.name);
@@ -42,8 +42,8 @@ pub(crate) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     check_version(root)?;
     let generator = root.need("asset")?.text("generator").ok().flatten();
     sink.scene.written_by = generator.map(program).unwrap_or_default();
-    extensions::check(root, &mut sink.oddities)?;
-    let document = Document::load(root, &container, reading, source, &mut sink.oddities)?;
+    extensions::check(root, &mut sink.diagnostics)?;
+    let document = Document::load(root, &container, reading, source, &mut sink.diagnostics)?;
     #[cfg(feature = "draco")]
     let drawn = crate::geometry::draco::unpack(&document, &mut reading.budget)?;
     #[cfg(feature = "draco")]
@@ -71,10 +71,10 @@ fn check(
     sink: &mut Sink,
 ) -> Result<(), FormatError> {
     if reading.options.validate {
-        validate::document(document, &mut reading.budget, &mut sink.oddities);
-        soundness::validate_images(document, pictures, reading, &mut sink.oddities)
+        validate::document(document, &mut reading.budget, &mut sink.diagnostics);
+        soundness::validate_images(document, pictures, reading, &mut sink.diagnostics)
     } else {
-        soundness::check_data(&mut DataReader::new(document, &mut reading.budget, &mut sink.oddities))
+        soundness::check_data(&mut DataReader::new(document, &mut reading.budget, &mut sink.diagnostics))
     }
 }
 
@@ -86,7 +86,7 @@ fn place_all<'d>(
     reading: &mut Reading,
     sink: &mut Sink,
 ) -> Result<(), FormatError> {
-    let posed = Posed::read(document, time, reading, &mut sink.oddities)?;
+    let posed = Posed::read(document, time, reading, &mut sink.diagnostics)?;
     for placed in &posed.graph.nodes {
         place(placed, &posed, meshes, reading, sink)?;
     }
@@ -99,7 +99,7 @@ fn place_all<'d>(
     scene.inventory.animations = posed.pose.animations;
     scene.inventory.variants = posed.variants.names;
     if scene.objects.is_empty() && scene.lights.is_empty() {
-        sink.oddities.note("there is nothing to render in this file", || document.root.at());
+        sink.diagnostics.note("there is nothing to render in this file", || document.root.at());
     }
     Ok(())
 }
@@ -125,7 +125,7 @@ fn place<'d>(
     }
     if let Some(index) = node.get("camera") {
         let camera = document.named("cameras", index)?;
-        let spec = cameras::camera(camera, node, &placed.world, &mut sink.oddities)?;
+        let spec = cameras::camera(camera, node, &placed.world, &mut sink.diagnostics)?;
         sink.scene.cameras.extend(spec);
     }
     if !placed.is_visible {
@@ -133,7 +133,7 @@ fn place<'d>(
     }
     if let Some(light) = node.extension("KHR_lights_punctual") {
         let radius = reading.options.light_radius;
-        let spec = lights::light(document.root, light, placed, radius, &mut sink.oddities)?;
+        let spec = lights::light(document.root, light, placed, radius, &mut sink.diagnostics)?;
         sink.scene.lights.extend(spec);
     }
     if let Some(light) = node.extension("EXT_lights_area") {
@@ -157,7 +157,7 @@ fn place_mesh<'d>(
     let places = match node.get("skin") {
         Some(_) => Instances::once(DMat4::IDENTITY),
         None => {
-            let mut data = DataReader::new(document, &mut reading.budget, &mut sink.oddities);
+            let mut data = DataReader::new(document, &mut reading.budget, &mut sink.diagnostics);
             Instances::read(placed, &mut data)?
         }
     };
@@ -188,12 +188,12 @@ fn is_flat(world: &DMat4, node: JsonNode, sink: &mut Sink) -> bool {
         2 => true,
         // This is how files hide meshes. [glTF 2.0, 3.5.3]
         0 => {
-            sink.oddities.remark("a node with a scale of zero is not shown", || node.at());
+            sink.diagnostics.remark("a node with a scale of zero is not shown", || node.at());
             false
         }
         _ => {
             let what = "a node is scaled to a line or to something that is not finite, and is not rendered";
-            sink.oddities.note(what, || node.at());
+            sink.diagnostics.note(what, || node.at());
             false
         }
     }

@@ -9,7 +9,7 @@ use crate::document::meshopt;
 use crate::materials::pictures::{Pictures, decode, encoded, release};
 use crate::validate;
 use bilux_import::FormatError;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::Reading;
 
 /// Reads the images that no material uses, and validates the bytes of all.
@@ -17,7 +17,7 @@ pub(crate) fn validate_images(
     document: &Document,
     pictures: &Pictures,
     reading: &mut Reading,
-    oddities: &mut Oddities,
+    diagnostics: &mut Diagnostics,
 ) -> Result<(), FormatError> {
     let root = document.root;
     for (number, image) in root.get("images").into_iter().flat_map(|list| list.children()).enumerate() {
@@ -27,9 +27,9 @@ pub(crate) fn validate_images(
         }
         match encoded(document, image, reading) {
             Err(error @ FormatError::TooLarge { .. }) => return Err(error),
-            Err(error) => oddities.note(&error.without_place(), || image.at()),
+            Err(error) => diagnostics.note(&error.without_place(), || image.at()),
             Ok((_, bytes)) => {
-                validate::image(image, number, &bytes, root, oddities);
+                validate::image(image, number, &bytes, root, diagnostics);
                 release(bytes, reading);
                 if !pictures.contain(number)
                     && let Err(error) = decode(document, image, false, reading)
@@ -37,7 +37,7 @@ pub(crate) fn validate_images(
                     if let FormatError::TooLarge { .. } = error {
                         return Err(error);
                     }
-                    oddities.note(&error.without_place(), || image.at());
+                    diagnostics.note(&error.without_place(), || image.at());
                 }
             }
         }

@@ -3,7 +3,7 @@
 use super::{Check, Role, text, whole};
 use crate::document::json::JsonNode;
 use crate::document::uri;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 
 pub(super) fn source<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     match (node.get("uri"), node.get("bufferView")) {
@@ -52,16 +52,22 @@ fn extension_for(kind: &str) -> Option<&'static str> {
 }
 
 /// Compares the bytes of an image, which is the one of this number, with the document's description of it.
-pub(crate) fn compare(image: JsonNode, number: usize, bytes: &[u8], root: JsonNode, oddities: &mut Oddities) {
+pub(crate) fn compare(
+    image: JsonNode,
+    number: usize,
+    bytes: &[u8],
+    root: JsonNode,
+    diagnostics: &mut Diagnostics,
+) {
     let in_uri = || uri::data(text(image, "uri")?)?.0.split(';').next();
     let declared = text(image, "mimeType").or_else(in_uri).filter(|kind| kind.starts_with("image/"));
     let Some(found) = recognised(bytes) else {
         let what = "this image is neither PNG nor JPEG, the only two formats in glTF without extensions";
-        return oddities.note(what, || image.at());
+        return diagnostics.note(what, || image.at());
     };
     if let Some(declared) = declared.filter(|declared| *declared != found) {
         let what = format!("this image is declared as {declared}, but is {found}");
-        oddities.note(&what, || image.at());
+        diagnostics.note(&what, || image.at());
     }
     let Some(extension) = extension_for(found) else { return };
     let declares = root
@@ -69,13 +75,13 @@ pub(crate) fn compare(image: JsonNode, number: usize, bytes: &[u8], root: JsonNo
         .is_some_and(|list| list.children().any(|name| name.value().as_str() == Some(extension)));
     if !declares {
         let what = format!("an image of type {found} needs the extension {extension}");
-        oddities.note(&what, || image.at());
+        diagnostics.note(&what, || image.at());
     }
     for texture in root.get("textures").into_iter().flat_map(|list| list.children()) {
         if whole(texture, "source") == Some(number) {
             let what =
                 format!("the source of a texture must be PNG or JPEG, not {found}: name it in {extension}");
-            oddities.note(&what, || texture.at());
+            diagnostics.note(&what, || texture.at());
         }
     }
 }

@@ -29,7 +29,7 @@ use crate::document::json::JsonNode;
 use crate::document::json_document::Document;
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 pub(crate) use images::compare as image;
 use std::collections::{HashMap, HashSet};
 
@@ -38,7 +38,7 @@ struct Check<'d, 'a> {
     document: &'d Document<'d>,
     root: JsonNode<'d>,
     budget: &'a mut Budget,
-    oddities: &'a mut Oddities,
+    diagnostics: &'a mut Diagnostics,
     /// The list and the index of every item that is referenced.
     used: HashSet<(&'d str, usize)>,
     /// Extensions that are allowed on any object.
@@ -79,12 +79,12 @@ impl Role {
 }
 
 /// Reports every fault of a document as a warning, except for those of the bytes of images ([`image`]).
-pub(crate) fn document(document: &Document, budget: &mut Budget, oddities: &mut Oddities) {
+pub(crate) fn document(document: &Document, budget: &mut Budget, diagnostics: &mut Diagnostics) {
     let mut check = Check {
         document,
         root: document.root,
         budget,
-        oddities,
+        diagnostics,
         used: HashSet::new(),
         extensions: HashSet::new(),
         roles: HashMap::new(),
@@ -96,12 +96,12 @@ pub(crate) fn document(document: &Document, budget: &mut Budget, oddities: &mut 
 impl<'d> Check<'d, '_> {
     /// Reports a fault at a node.
     fn report(&mut self, at: JsonNode<'d>, message: impl AsRef<str>) {
-        self.oddities.note(message.as_ref(), || at.at());
+        self.diagnostics.note(message.as_ref(), || at.at());
     }
 
     /// Reports something at a node that has no effect on the picture.
     fn remark(&mut self, at: JsonNode<'d>, message: &str) {
-        self.oddities.remark(message, || at.at());
+        self.diagnostics.remark(message, || at.at());
     }
 
     /// Reports a fault at a property, or at the object if it has no such property.

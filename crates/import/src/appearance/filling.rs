@@ -1,7 +1,7 @@
 //! Media that fill shapes: the same everywhere, or as dense as a grid says.
 
 use crate::FormatError;
-use crate::input::oddities::Oddities;
+use crate::input::diagnostics::Diagnostics;
 use crate::input::reading::Reading;
 use bilux_math::{DMat4, Rgb, Transform};
 use bilux_scene::media::Grid;
@@ -55,18 +55,18 @@ pub fn fill(
     medium: &Medium,
     to_world: &DMat4,
     at: &Span,
-    (reading, oddities): (&mut Reading, &mut Oddities),
+    (reading, diagnostics): (&mut Reading, &mut Diagnostics),
 ) -> Result<(), FormatError> {
     let is_interface = spec.kind == "interface";
     let is_solid_glass = spec.kind == "dielectric" && spec.parameters.find("thin").is_none();
     if !is_interface && !is_solid_glass {
         let what = "a medium inside is supported only in dielectrics and interfaces";
-        oddities.note(what, || at.clone());
+        diagnostics.note(what, || at.clone());
         return Ok(());
     }
     if !is_interface && (medium.density.is_some() || !medium.emission.is_black()) {
         let what = "a medium that varies or emits light is supported only in interfaces";
-        oddities.note(what, || at.clone());
+        diagnostics.note(what, || at.clone());
         return Ok(());
     }
     medium.fill(spec);

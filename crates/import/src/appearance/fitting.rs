@@ -1,6 +1,6 @@
 //! Fits the requested surface to what the renderer's materials support.
 
-use crate::input::oddities::Oddities;
+use crate::input::diagnostics::Diagnostics;
 use bilux_math::Rgb;
 use bilux_math::registry::{Parameter, ParameterKind};
 use bilux_scene::{MATERIALS, Span, Spec, Value};
@@ -9,7 +9,7 @@ use bilux_scene::{MATERIALS, Span, Spec, Value};
 const KIND: &str = "principled";
 
 /// A material clamped to the ranges of its table row; warns about parameters that the row lacks.
-pub fn fitted(draft: Spec, oddities: &mut Oddities) -> Spec {
+pub fn fitted(draft: Spec, diagnostics: &mut Diagnostics) -> Spec {
     let row = MATERIALS.iter().find(|row| row.entry.name == KIND);
     let known = row.map_or(&[][..], |row| row.entry.parameters);
     let mut fitted = Spec { span: draft.span.clone(), ..Spec::new(&draft.name, KIND) };
@@ -17,11 +17,11 @@ pub fn fitted(draft: Spec, oddities: &mut Oddities) -> Spec {
         let Some(parameter) = known.iter().find(|parameter| parameter.name == key) else {
             if !needs_no_warning(&key, &value) {
                 let what = format!("{} of a material is not supported", key.replace('_', " "));
-                oddities.note(&what, || at.clone());
+                diagnostics.note(&what, || at.clone());
             }
             continue;
         };
-        if let Some(value) = within(parameter, value, &at, oddities) {
+        if let Some(value) = within(parameter, value, &at, diagnostics) {
             fitted.parameters.set_at(&key, value, at);
         }
     }
@@ -29,7 +29,7 @@ pub fn fitted(draft: Spec, oddities: &mut Oddities) -> Spec {
 }
 
 /// A value clamped to its range; `None`, with a warning, if a texture is not supported there.
-fn within(parameter: &Parameter, value: Value, at: &Span, oddities: &mut Oddities) -> Option<Value> {
+fn within(parameter: &Parameter, value: Value, at: &Span, diagnostics: &mut Diagnostics) -> Option<Value> {
     let takes_pictures = matches!(
         parameter.kind,
         ParameterKind::ColourTexture { .. } | ParameterKind::NumberTexture { .. } | ParameterKind::Texture
@@ -44,7 +44,7 @@ fn within(parameter: &Parameter, value: Value, at: &Span, oddities: &mut Odditie
     let held = match &value {
         Value::Texture(_) if !takes_pictures => {
             let what = format!("{} from a texture is not supported", parameter.name.replace('_', " "));
-            oddities.note(&what, || at.clone());
+            diagnostics.note(&what, || at.clone());
             return None;
         }
         Value::Number(x) => Value::Number(x.clamp(min, max)),
@@ -54,7 +54,7 @@ fn within(parameter: &Parameter, value: Value, at: &Span, oddities: &mut Odditie
     if held != value {
         let what =
             format!("{} of a material is out of range: it is limited to {min} to {max}", parameter.name);
-        oddities.note(&what, || at.clone());
+        diagnostics.note(&what, || at.clone());
     }
     Some(held)
 }

@@ -86,6 +86,6 @@ impl<'a, 'o> PrincipledDraft<'a, 'o> {
     /// Names something that the picture does not show.
     pub fn not_shown(&mut self, what: &str) {
         let at = self.spec.span.clone();
-        self.sink.oddities.not_shown(what, || at);
+        self.sink.diagnostics.not_shown(what, || at);
     }
 }

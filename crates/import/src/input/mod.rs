@@ -2,12 +2,12 @@
 
 pub mod authors;
 pub mod choice;
+pub mod diagnostics;
 pub mod images;
 pub mod includes;
 pub mod locating;
 pub mod mounting;
 pub mod names;
-pub mod oddities;
 pub mod options;
 pub(crate) mod plain;
 pub mod reading;

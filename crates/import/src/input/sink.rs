@@ -1,13 +1,13 @@
 //! Output of a reader: a scene, and what is odd about the file.
 
-use crate::input::oddities::Oddities;
+use crate::input::diagnostics::Diagnostics;
 use bilux_scene::SceneBuilder;
 
-/// The scene so far, and the oddities so far.
+/// The scene so far, and the diagnostics so far.
 #[derive(Default)]
 pub struct Sink {
     pub scene: SceneBuilder,
-    pub oddities: Oddities,
+    pub diagnostics: Diagnostics,
 }
 
 impl Sink {
@@ -18,13 +18,13 @@ impl Sink {
             exposure_unspecified: true,
             ..SceneBuilder::default()
         };
-        Sink { scene, oddities: Oddities::default() }
+        Sink { scene, diagnostics: Diagnostics::default() }
     }
 
-    /// The scene with a warning or a note for each oddity.
+    /// The scene with a warning or a note for each diagnostic.
     pub fn finish(self) -> SceneBuilder {
-        let Sink { mut scene, oddities } = self;
-        oddities.into_warnings(&mut scene);
+        let Sink { mut scene, diagnostics } = self;
+        diagnostics.into_warnings(&mut scene);
         scene
     }
 }

@@ -3,7 +3,7 @@
 use bilux_import::FormatError;
 use bilux_import::bytes::float::{parse_f32, parse_f64};
 use bilux_import::bytes::text::{Cursor, Places, name_of, no_text, quoted};
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::{Reading, Source, plain_material};
 use bilux_math::{DVec3, Rgb, Vec2, Vec3};
 use bilux_scene::{Mesh, Object, SceneBuilder, Spec, Value};
@@ -26,18 +26,18 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         places: Places::new(source.name, source.bytes),
         name: source.name.clone(),
         scene: SceneBuilder::default(),
-        oddities: Oddities::default(),
+        diagnostics: Diagnostics::default(),
         group: Group { name: source.stem(), ..Group::default() },
         materials: HashMap::new(),
     };
     reader.groups().map_err(|error| no_text(error, source.bytes))?;
-    let Asc { mut scene, oddities, places, .. } = reader;
+    let Asc { mut scene, diagnostics, places, .. } = reader;
     if scene.objects.is_empty() {
         let message = "it contains no triangles: each is a line with a word, then three lines of 8 numbers \
                        (x y z, nx ny nz, u v)";
         return Err(FormatError::malformed(message, places.whole()));
     }
-    oddities.into_warnings(&mut scene);
+    diagnostics.into_warnings(&mut scene);
     Ok(scene)
 }
 
@@ -47,7 +47,7 @@ struct Asc<'a, 'o, 'r> {
     places: Places<'a>,
     name: Arc<str>,
     scene: SceneBuilder,
-    oddities: Oddities,
+    diagnostics: Diagnostics,
     group: Group,
     /// Index of each material, keyed by its values.
     materials: HashMap<String, usize>,
@@ -112,7 +112,7 @@ impl Asc<'_, '_, '_> {
         let word = line.word();
         if word != b"object" && !word.starts_with(b"#") && !word.starts_with(b"//") {
             let places = &self.places;
-            self.oddities.note("a line is not followed by a triangle and is ignored", || places.at(start));
+            self.diagnostics.note("a line is not followed by a triangle and is ignored", || places.at(start));
         }
     }
 
@@ -212,14 +212,14 @@ impl Asc<'_, '_, '_> {
         }
         if numbers.values[..numbers.count].iter().any(|x| !x.is_finite()) {
             let places = &self.places;
-            self.oddities
+            self.diagnostics
                 .note("a triangle has numbers that are infinite or not numbers (NaN); it is kept", || {
                     places.at(start)
                 });
         }
         if stride == NINTH {
             let places = &self.places;
-            self.oddities.note("a ninth number per vertex is ignored", || places.at(start));
+            self.diagnostics.note("a ninth number per vertex is ignored", || places.at(start));
         }
         self.push(&numbers.values, stride)
     }

@@ -2,7 +2,7 @@
 
 use bilux_import::FormatError;
 use bilux_import::bytes::text::whole_file;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::{Reading, Source};
 use bilux_import::meshes::cloud::Cloud;
 use bilux_math::colour::srgb_decode;
@@ -62,10 +62,10 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         return Err(fail("none of its points has a place"));
     }
     let mut scene = cloud.into_scene_of(parts);
-    let mut oddities = Oddities::default();
+    let mut diagnostics = Diagnostics::default();
     let at = || whole_file(source.name);
     if without_place > 0 {
-        oddities.remark(
+        diagnostics.remark(
             &format!("{without_place} points have no place, as where a laser met nothing; they are left out"),
             at,
         );
@@ -73,13 +73,13 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     if mended_rotations > 0 {
         let what =
             "quaternions whose length is not 1 are taken as if it were, and those of length 0 turn nothing";
-        oddities.note(what, at);
+        diagnostics.note(what, at);
     }
     if !reader.images().is_empty() {
-        oddities.not_shown("photographs", at);
+        diagnostics.not_shown("photographs", at);
     }
-    oddities.not_used("rows, columns, returns and times of points, and intensities beside colours", at);
-    oddities.into_warnings(&mut scene);
+    diagnostics.not_used("rows, columns, returns and times of points, and intensities beside colours", at);
+    diagnostics.into_warnings(&mut scene);
     Ok(scene)
 }
 

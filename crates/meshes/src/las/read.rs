@@ -5,7 +5,7 @@ use super::header::{Header, u16_at, u32_at};
 use bilux_import::FormatError;
 use bilux_import::bytes::text::whole_file;
 use bilux_import::geometry::colours::{Greatest, Stored, decoded};
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::{Reading, Source};
 use bilux_import::meshes::cloud::{Cloud, SAMPLES};
 use bilux_math::colour::srgb_decode;
@@ -40,16 +40,16 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         cloud.colours.extend(colour_of.as_ref().map(|of| of(record)));
     }
     let mut scene = cloud.into_scene(source.stem());
-    let mut oddities = Oddities::default();
+    let mut diagnostics = Diagnostics::default();
     if withheld > 0 {
         let left = if withheld == header.count as usize { "all, so they are shown" } else { "left out" };
-        oddities.remark(&format!("{withheld} points are withheld, which means deleted: {left}"), || {
+        diagnostics.remark(&format!("{withheld} points are withheld, which means deleted: {left}"), || {
             whole_file(source.name)
         });
     }
     let unused = "classes, returns, angles and times of points, and intensities beside colours";
-    oddities.not_used(unused, || whole_file(source.name));
-    oddities.into_warnings(&mut scene);
+    diagnostics.not_used(unused, || whole_file(source.name));
+    diagnostics.into_warnings(&mut scene);
     Ok(scene)
 }
 

@@ -3,7 +3,7 @@
 use bilux_import::FormatError;
 use bilux_import::bytes::text::TextPosition;
 use bilux_import::geometry::normals::Smoothing;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::meshes::indexed_faces::Corner;
 use bilux_math::{Rgb, Vec2, Vec3};
 
@@ -25,7 +25,7 @@ pub(super) struct Block {
     pub(super) strokes: Vec<Stroke>,
     /// State changes between faces, in order.
     pub(super) turns: Vec<(usize, StateChange)>,
-    pub(super) oddities: Oddities,
+    pub(super) diagnostics: Diagnostics,
     /// The number of line ends.
     pub(super) lines: u32,
     /// The memory that reading the block took from the budget.
@@ -72,7 +72,7 @@ impl Block {
         self.backward.clear();
         self.turns.clear();
         self.strokes.clear();
-        Block { oddities: Oddities::default(), fault: None, failure: None, ..self }
+        Block { diagnostics: Diagnostics::default(), fault: None, failure: None, ..self }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::habits::Habit;
 use bilux_import::bytes::text::{Cursor, Places};
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::{Reading, Source};
 
 /// A library while it is read.
@@ -11,7 +11,7 @@ pub(super) struct Library<'a, 'o, 'r> {
     pub(super) source: &'a Source<'a>,
     pub(super) cursor: Cursor<'a>,
     pub(super) places: Places<'a>,
-    pub(super) oddities: Oddities,
+    pub(super) diagnostics: Diagnostics,
     /// Meaning of the specular keywords to the program that wrote the library, where that is not Phong's.
     pub(super) habit: Option<Habit>,
 }

@@ -91,7 +91,7 @@ impl Library<'_, '_, '_> {
                 (b"-blendu" | b"-blendv" | b"-imfchan" | b"-type" | b"-colorspace" | b"-texres", _) => {}
                 (option, _) => {
                     let (places, name) = (&self.places, String::from_utf8_lossy(option));
-                    self.oddities.not_shown(&format!("'{name}' of textures"), || places.at(start));
+                    self.diagnostics.not_shown(&format!("'{name}' of textures"), || places.at(start));
                 }
             }
         }

@@ -8,7 +8,7 @@ use super::surface::material;
 use bilux_import::FormatError;
 use bilux_import::bytes::float::parse_f32;
 use bilux_import::bytes::text::{Cursor, Places, name_of, quoted, unquoted};
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::{Reading, Source};
 use bilux_math::Rgb;
 use bilux_scene::SceneBuilder;
@@ -26,7 +26,7 @@ pub(super) fn read_library(
         source,
         cursor: Cursor::joining_lines(source.bytes),
         places: Places::new(source.name, source.bytes),
-        oddities: Oddities::default(),
+        diagnostics: Diagnostics::default(),
         habit: habit_of(source.bytes),
     };
     let mut drafts: Vec<Draft> = Vec::new();
@@ -48,7 +48,7 @@ pub(super) fn read_library(
             (key, None) => {
                 let places = &library.places;
                 let what = " comes before the first 'newmtl', which begins a material: this line is left out";
-                library.oddities.note_first(what, || quoted(key), || places.at(start));
+                library.diagnostics.note_first(what, || quoted(key), || places.at(start));
             }
         }
         library.cursor.end_line();
@@ -62,7 +62,7 @@ pub(super) fn read_library(
         library.displace(&draft, index, scene)?;
         by_name.entry(draft.name).or_insert(index);
     }
-    library.oddities.into_warnings(scene);
+    library.diagnostics.into_warnings(scene);
     Ok(())
 }
 
@@ -112,22 +112,22 @@ impl Library<'_, '_, '_> {
             let map = self.map(start);
             if map.file.is_empty() {
                 let (places, what) = (&self.places, " has no file name, and is left out");
-                self.oddities.note_first(what, || quoted(name.as_bytes()), || places.at(start));
+                self.diagnostics.note_first(what, || quoted(name.as_bytes()), || places.at(start));
                 return Ok(());
             }
             if name != "disp" && map.range != [0.0, 1.0] {
                 let places = &self.places;
-                self.oddities.not_shown("'-mm' of textures", || places.at(start));
+                self.diagnostics.not_shown("'-mm' of textures", || places.at(start));
             }
             self.reading.budget.take::<u8>(2 * map.file.len(), self.source.name)?;
             draft.maps.insert(name, map);
         } else {
             let places = &self.places;
             if let Some(name) = known(&NOT_SHOWN) {
-                self.oddities.not_shown(&format!("'{name}' of materials"), || places.at(start));
+                self.diagnostics.not_shown(&format!("'{name}' of materials"), || places.at(start));
             } else if known(&WITHOUT_USE).is_none() {
                 let what = format!("{} of a material is ignored", quoted(key));
-                self.oddities.note(&what, || places.at(start));
+                self.diagnostics.note(&what, || places.at(start));
             }
             self.cursor.rest_of_line();
         }
@@ -140,7 +140,7 @@ impl Library<'_, '_, '_> {
         if is_stated && draft.has_exponent_of_zero() && draft.lacks_highlight() {
             let what = "'Ns 0' is read as no highlight, as MeshLab, Asset Forge and others mean it";
             let (places, offset) = (&self.places, draft.offset("Ns"));
-            self.oddities.remark(what, || places.at(offset));
+            self.diagnostics.remark(what, || places.at(offset));
         }
     }
 
@@ -148,7 +148,7 @@ impl Library<'_, '_, '_> {
     fn colour(&mut self) -> Option<Rgb> {
         if [&b"spectral"[..], b"xyz"].contains(&self.cursor.peek_word()) {
             let (places, at) = (&self.places, self.cursor.offset());
-            self.oddities.not_shown("spectral and xyz colours of materials", || places.at(at));
+            self.diagnostics.not_shown("spectral and xyz colours of materials", || places.at(at));
             self.cursor.rest_of_line();
             return None;
         }
@@ -176,7 +176,7 @@ impl Library<'_, '_, '_> {
         };
         let places = &self.places;
         let first = || if what.starts_with(' ') { quoted(word) } else { String::new() };
-        self.oddities.note_first(what, first, || places.at(offset));
+        self.diagnostics.note_first(what, first, || places.at(offset));
         None
     }
 }

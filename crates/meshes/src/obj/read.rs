@@ -107,7 +107,7 @@ impl Obj<'_, '_, '_> {
     fn join(&mut self, block: &mut Block, text: &[u8]) -> Result<(), FormatError> {
         self.reading.budget.take_bytes(block.spent, self.source.name)?;
         self.resolve_backward_indices(block, text);
-        self.sink.oddities.append(std::mem::take(&mut block.oddities), self.lines);
+        self.sink.diagnostics.append(std::mem::take(&mut block.diagnostics), self.lines);
         self.add_colours(block)?;
         let before = self.indexed.positions.len();
         let indexed = &mut self.indexed;
@@ -154,7 +154,7 @@ impl Obj<'_, '_, '_> {
             let index = u32::try_from(index).ok().filter(|&index| index != NONE).unwrap_or_else(|| {
                 // Counts lines only once per block: a file may have as many of these faults as it has corners.
                 if !std::mem::take(&mut is_first) {
-                    self.sink.oddities.note(BACKWARD_LEFT_OUT, || whole_file(self.source.name));
+                    self.sink.diagnostics.note(BACKWARD_LEFT_OUT, || whole_file(self.source.name));
                     return NONE;
                 }
                 let mut cursor = Cursor::joining_lines(text);
@@ -163,7 +163,7 @@ impl Obj<'_, '_, '_> {
                 at.line = at.line.saturating_add(self.lines);
                 let message = bad_corner(cursor.word());
                 self.set_fault(FormatError::malformed(message.clone(), at.clone()));
-                self.sink.oddities.note_first(BACKWARD_LEFT_OUT, || message, || at);
+                self.sink.diagnostics.note_first(BACKWARD_LEFT_OUT, || message, || at);
                 NONE
             });
             // A faulty face may have ended before this corner.

@@ -103,7 +103,7 @@ impl<'a> Reader<'a> {
 
     fn note(&mut self, what: &str, at: TextPosition) {
         let file = self.file;
-        self.block.oddities.note(what, || at.in_file(file));
+        self.block.diagnostics.note(what, || at.in_file(file));
     }
 
     fn turn(&mut self, turn: StateChange) {
@@ -210,7 +210,7 @@ impl<'a> Reader<'a> {
         if self.block.fault.is_none() {
             self.block.fault = Some(FormatError::malformed(message.clone(), at.clone()));
         }
-        self.block.oddities.note_first(left_out, || message, || at);
+        self.block.diagnostics.note_first(left_out, || message, || at);
         self.pass_line();
     }
 
@@ -342,22 +342,22 @@ impl<'a> Reader<'a> {
     }
 
     fn other_statement(&mut self, word: &[u8], start: TextPosition) -> Result<(), FormatError> {
-        let (oddities, at) = (&mut self.block.oddities, || start.in_file(self.file));
+        let (diagnostics, at) = (&mut self.block.diagnostics, || start.in_file(self.file));
         match word {
             b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"curv" | b"curv2" | b"surf" | b"parm"
             | b"trim" | b"hole" | b"scrv" | b"sp" | b"end" | b"con" => {
-                oddities.not_shown("free-form curves and surfaces", at);
+                diagnostics.not_shown("free-form curves and surfaces", at);
             }
             b"maplib" | b"usemap" | b"call" | b"shadow_obj" | b"trace_obj" => {
-                oddities.not_shown(&quoted(word), at);
+                diagnostics.not_shown(&quoted(word), at);
             }
             b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"ctech" | b"stech" | b"mg" | b"t" | b"csh"
-            | b"vw" => oddities.not_used(&quoted(word), at),
+            | b"vw" => diagnostics.not_used(&quoted(word), at),
             _ if word.len() > 20 || !word.iter().all(u8::is_ascii_graphic) => {
                 let message = format!("{} is not a statement of an OBJ file", quoted(word));
                 return Err(FormatError::malformed(message, at()));
             }
-            _ => oddities.note(&format!("the unknown statement {} is ignored", quoted(word)), at),
+            _ => diagnostics.note(&format!("the unknown statement {} is ignored", quoted(word)), at),
         }
         self.pass_line();
         Ok(())

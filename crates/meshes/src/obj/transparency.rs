@@ -58,7 +58,7 @@ impl Library<'_, '_, '_> {
 
     fn note_at(&mut self, draft: &Draft, key: &str, what: &str) {
         let (places, offset) = (&self.places, draft.offset(key));
-        self.oddities.note(what, || places.at(offset));
+        self.diagnostics.note(what, || places.at(offset));
     }
 }
 

@@ -6,7 +6,7 @@ use bilux_import::bytes::float::{parse_f32, parse_relative};
 use bilux_import::bytes::text::{Cursor, Places, no_text, quoted};
 use bilux_import::geometry::colours::{Stored, decode};
 use bilux_import::geometry::normals::{BY_ANGLE, FLAT, Smoothing};
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::{Reading, Source};
 use bilux_import::input::sink::Sink;
 use bilux_import::meshes::indexed_faces::{Corner, FaceColour, IndexedFaces, NONE, Run, assemble};
@@ -23,7 +23,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         cursor: Cursor::new(source.bytes),
         indexed: IndexedFaces::default(),
         smoothing: BY_ANGLE,
-        oddities: Oddities::default(),
+        diagnostics: Diagnostics::default(),
     };
     let columns = reader.first_word().map_err(|error| no_text(error, source.bytes))?;
     let [vertices, faces] = reader.counts()?;
@@ -40,7 +40,7 @@ struct Off<'a, 'o, 'r> {
     indexed: IndexedFaces,
     /// The smoothing of faces without normals.
     smoothing: Smoothing,
-    oddities: Oddities,
+    diagnostics: Diagnostics,
 }
 
 /// The first numbers of a line; the others are only counted.
@@ -121,11 +121,11 @@ impl<'a> Off<'a, '_, '_> {
         let places = self.places;
         if is_long {
             let what = "a vertex has more numbers than the first word of the file says; they are left out";
-            self.oddities.note(what, || places.at(row.start));
+            self.diagnostics.note(what, || places.at(row.start));
         }
         if row.numbers.iter().any(|x| !x.is_finite()) {
             let what = "a vertex has numbers that are infinite or not numbers (NaN); it is kept";
-            self.oddities.note(what, || places.at(row.start));
+            self.diagnostics.note(what, || places.at(row.start));
         }
     }
 
@@ -158,7 +158,7 @@ impl<'a> Off<'a, '_, '_> {
         if columns.colours && !self.indexed.face_colours.is_empty() {
             let places = self.places;
             self.indexed.face_colours.clear();
-            self.oddities.not_shown("colours of faces, since vertices have colours", || places.whole());
+            self.diagnostics.not_shown("colours of faces, since vertices have colours", || places.whole());
         }
         Ok(())
     }
@@ -169,7 +169,7 @@ impl<'a> Off<'a, '_, '_> {
         let (mut numbers, mut count, places) = ([0.0; 3], 0, self.places);
         while !matches!(self.cursor.peek_word(), [] | [b'#', ..]) {
             let Some(number) = parse_f32(self.cursor.word()) else {
-                self.oddities.note("a face has more than vertices and a colour", || places.at(start));
+                self.diagnostics.note("a face has more than vertices and a colour", || places.at(start));
                 return None;
             };
             if let Some(slot) = numbers.get_mut(count) {
@@ -178,7 +178,7 @@ impl<'a> Off<'a, '_, '_> {
             count += 1;
         }
         if matches!(count, 1 | 2) {
-            self.oddities.not_shown("colours of faces that are indices into a table", || places.at(start));
+            self.diagnostics.not_shown("colours of faces that are indices into a table", || places.at(start));
         }
         (count >= 3).then(|| Rgb::from_array(numbers))
     }
@@ -187,7 +187,7 @@ impl<'a> Off<'a, '_, '_> {
     fn end_face(&mut self, corners: &[Corner], start: usize) -> Result<bool, FormatError> {
         let (indexed, places) = (&mut self.indexed, self.places);
         if corners.len() < 3 {
-            self.oddities.note("a face has fewer than 3 corners and is left out", || places.at(start));
+            self.diagnostics.note("a face has fewer than 3 corners and is left out", || places.at(start));
             return Ok(false);
         }
         self.reading.budget.take::<[usize; 2]>(1, self.source.name)?;
@@ -202,13 +202,13 @@ impl<'a> Off<'a, '_, '_> {
     }
 
     fn finish(self) -> Result<SceneBuilder, FormatError> {
-        let Off { reading, source, places, mut indexed, oddities, .. } = self;
+        let Off { reading, source, places, mut indexed, diagnostics, .. } = self;
         if indexed.faces.is_empty() {
             return Err(FormatError::malformed("it contains no faces", places.whole()));
         }
         indexed.runs.push(Run { first_face: 0, name: source.stem(), material: None });
         let place = |offset: u64| places.at(offset as usize);
-        let mut sink = Sink { scene: SceneBuilder::default(), oddities };
+        let mut sink = Sink { scene: SceneBuilder::default(), diagnostics };
         assemble(reading, source, &place, indexed, HashMap::new(), &mut sink)?;
         Ok(sink.finish())
     }

@@ -54,7 +54,7 @@ impl Ply<'_, '_, '_> {
             self.end_row(start);
             if corners.len() < 3 {
                 let (places, what) = (self.places, "a face has fewer than 3 corners and is left out");
-                self.oddities.note(what, || places.at(start));
+                self.diagnostics.note(what, || places.at(start));
                 continue;
             }
             let points = corners.iter().map(|&i| self.indexed.positions[i as usize]);
@@ -63,7 +63,7 @@ impl Ply<'_, '_, '_> {
                 let what =
                     "a concave polygon has too many corners to triangulate exactly and is treated as convex";
                 let places = self.places;
-                self.oddities.note(what, || places.at(start));
+                self.diagnostics.note(what, || places.at(start));
             }
         }
         Ok(triangles)
@@ -94,7 +94,7 @@ impl Ply<'_, '_, '_> {
             ..Mesh::default()
         });
         scene.objects.push(Object::new(&self.source.stem(), Arc::new(mesh), material));
-        self.oddities.into_warnings(&mut scene);
+        self.diagnostics.into_warnings(&mut scene);
         Ok(scene)
     }
 }

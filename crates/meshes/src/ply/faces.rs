@@ -100,7 +100,7 @@ impl Ply<'_, '_, '_> {
             corners.clear();
             let places = self.places;
             let what = "a face has fewer than 3 corners and is left out";
-            self.oddities.note(what, || places.at(start));
+            self.diagnostics.note(what, || places.at(start));
         }
         Ok(())
     }
@@ -141,7 +141,7 @@ impl Ply<'_, '_, '_> {
             if !uvs.is_empty() && !corners.is_empty() {
                 let places = self.places;
                 let what = "a face has different numbers of corners and of texture coordinates";
-                self.oddities.note(what, || places.at(start));
+                self.diagnostics.note(what, || places.at(start));
             }
             return;
         }

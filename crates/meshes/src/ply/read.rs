@@ -11,7 +11,7 @@ use bilux_import::FormatError;
 use bilux_import::bytes::text::{Places, quoted};
 use bilux_import::geometry::colours::decode;
 use bilux_import::geometry::normals::{BY_ANGLE, FLAT};
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::{Reading, Source};
 use bilux_import::input::sink::Sink;
 use bilux_import::meshes::indexed_faces::{IndexedFaces, NONE, assemble};
@@ -38,7 +38,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         wedge_uvs: Vec::new(),
         wedges: HashMap::new(),
         smoothing: if header.is_flat { FLAT } else { BY_ANGLE },
-        oddities: Oddities::default(),
+        diagnostics: Diagnostics::default(),
     };
     // If vertices have normals and faces have only their list, faces become triangles directly.
     let first = |name: &str| header.elements.iter().position(|element| element.name == name);
@@ -72,7 +72,7 @@ impl Ply<'_, '_, '_> {
             "edge" if strokes::has_both_ends(element) => self.edges(element),
             name => {
                 let places = self.places;
-                self.oddities.not_used(&quoted(name.as_bytes()), || places.at(element.offset));
+                self.diagnostics.not_used(&quoted(name.as_bytes()), || places.at(element.offset));
                 self.skip_element(element)
             }
         }
@@ -173,7 +173,7 @@ impl Ply<'_, '_, '_> {
         if values.iter().any(|x| !x.is_finite()) {
             let places = self.places;
             let what = "a vertex has numbers that are infinite or not numbers (NaN); it is kept";
-            self.oddities.note(what, || places.at(start));
+            self.diagnostics.note(what, || places.at(start));
         }
     }
 
@@ -188,7 +188,7 @@ impl Ply<'_, '_, '_> {
         }
         if !self.edges.is_empty() {
             let places = self.places;
-            self.oddities.not_shown("edges, since there are faces", || places.whole());
+            self.diagnostics.not_shown("edges, since there are faces", || places.whole());
         }
         if !triangles.is_empty() {
             return self.finish_triangles(textures, scene, triangles);
@@ -210,12 +210,12 @@ impl Ply<'_, '_, '_> {
         if !self.indexed.colours.is_empty() && !self.indexed.face_colours.is_empty() {
             let places = self.places;
             self.indexed.face_colours.clear();
-            self.oddities.not_shown("colours of faces, since vertices have colours", || places.whole());
+            self.diagnostics.not_shown("colours of faces, since vertices have colours", || places.whole());
         }
         let materials = self.materials(textures, &mut scene)?;
-        let Ply { reading, source, places, indexed, oddities, .. } = self;
+        let Ply { reading, source, places, indexed, diagnostics, .. } = self;
         let place = |offset: u64| places.at(offset as usize);
-        let mut sink = Sink { scene, oddities };
+        let mut sink = Sink { scene, diagnostics };
         assemble(reading, source, &place, indexed, materials, &mut sink)?;
         Ok(sink.finish())
     }

@@ -6,7 +6,7 @@ use bilux_import::FormatError;
 use bilux_import::bytes::text::{Places, quoted};
 use bilux_import::geometry::colours::Stored;
 use bilux_import::geometry::normals::Smoothing;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::{Reading, Source};
 use bilux_import::meshes::indexed_faces::IndexedFaces;
 use bilux_math::Vec2;
@@ -37,7 +37,7 @@ pub(super) struct Ply<'a, 'o, 'r> {
     pub(super) wedges: HashMap<[u32; 2], u32>,
     /// The smoothing of faces without normals.
     pub(super) smoothing: Smoothing,
-    pub(super) oddities: Oddities,
+    pub(super) diagnostics: Diagnostics,
 }
 
 /// Attributes of splats that balls do not have, by vertex.
@@ -65,14 +65,14 @@ impl Ply<'_, '_, '_> {
         let places = self.places;
         for (_, unused) in element.properties.iter().enumerate().filter(|(p, _)| !is_used(*p)) {
             let what = format!("{} of each {}", quoted(unused.name.as_bytes()), element.name);
-            self.oddities.not_used(&what, || places.at(element.offset));
+            self.diagnostics.not_used(&what, || places.at(element.offset));
         }
     }
 
     pub(super) fn end_row(&mut self, start: usize) {
         if self.body.end_row() {
             let places = self.places;
-            self.oddities.note("a line has more values than the header declares", || places.at(start));
+            self.diagnostics.note("a line has more values than the header declares", || places.at(start));
         }
     }
 }

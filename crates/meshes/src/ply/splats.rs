@@ -44,7 +44,7 @@ impl Ply<'_, '_, '_> {
         }
         let meaning_of = |name: &str| PROPERTIES.iter().position(|known| *known == name);
         let meaning: Vec<Option<usize>> = element.properties.iter().map(|p| meaning_of(&p.name)).collect();
-        self.oddities.not_shown(
+        self.diagnostics.not_shown(
             "how Gaussian splats fade, stretch and change colour with direction: each is a ball of its colour, mean \
              size and opacity",
             at,
@@ -73,7 +73,7 @@ impl Ply<'_, '_, '_> {
             if values.iter().any(|x| !x.is_finite()) {
                 let (places, what) =
                     (self.places, "a splat has numbers that are infinite or not numbers (NaN)");
-                self.oddities.note(what, || places.at(start));
+                self.diagnostics.note(what, || places.at(start));
             }
             let position = DVec3::from_slice(&values) - self.reading.origin;
             self.push_splat(&mut splats, position.as_vec3(), values.map(|value| value as f32));

@@ -51,7 +51,7 @@ impl Ply<'_, '_, '_> {
         if lines.len() < given {
             let places = self.places;
             let what = "some edges refer to vertices that the file does not have; they are left out";
-            self.oddities.note(what, || places.whole());
+            self.diagnostics.note(what, || places.whole());
         }
         self.reading.budget.take_bytes(known as u64 * 4, self.source.name)?;
         let points = if lines.is_empty() { (0..known as u32).collect() } else { Vec::new() };
@@ -71,7 +71,7 @@ impl Ply<'_, '_, '_> {
             ..Mesh::default()
         };
         scene.objects.push(Object::new(&self.source.stem(), Arc::new(mesh), material));
-        self.oddities.into_warnings(&mut scene);
+        self.diagnostics.into_warnings(&mut scene);
         Ok(scene)
     }
 }

@@ -47,7 +47,7 @@ impl Ply<'_, '_, '_> {
             let (places, at) = (self.places, self.indexed.places.at(face) as usize);
             let first =
                 || format!("a face has the texture {number}, but there are only {count}, counted from 0");
-            self.oddities.note_first(": such faces have none", first, || places.at(at));
+            self.diagnostics.note_first(": such faces have none", first, || places.at(at));
             *number = NONE;
         }
     }
@@ -63,7 +63,7 @@ impl Ply<'_, '_, '_> {
         if let Some((_, other)) = others.first() {
             let places = self.places;
             let what = "textures after the first, since faces do not say which they have";
-            self.oddities.not_shown(what, || places.at(*other));
+            self.diagnostics.not_shown(what, || places.at(*other));
         }
         self.texture(file, *offset, "", scene, materials)
     }

@@ -5,7 +5,7 @@ use bilux_import::bytes::float::{parse_f32, parse_relative};
 use bilux_import::bytes::text::{Cursor, Places, is_comment, name_of, quoted};
 use bilux_import::geometry::colours::{Greatest, Stored, UNCOLOURED, decoded};
 use bilux_import::geometry::polygon::Triangulator;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::{Reading, Source};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Mesh, Object, SceneBuilder};
@@ -18,16 +18,16 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         cursor: Cursor::new(source.bytes),
         places: Places::new(source.name, source.bytes),
         scene: SceneBuilder::default(),
-        oddities: Oddities::default(),
+        diagnostics: Diagnostics::default(),
         mesh: Mesh::default(),
         corners: Vec::new(),
         colour: None,
         triangulator: Triangulator::default(),
     };
     reader.statements()?;
-    let Ascii { mut scene, oddities, .. } = reader;
+    let Ascii { mut scene, diagnostics, .. } = reader;
     decode_all(&mut scene);
-    oddities.into_warnings(&mut scene);
+    diagnostics.into_warnings(&mut scene);
     Ok(scene)
 }
 
@@ -37,7 +37,7 @@ struct Ascii<'a, 'o, 'r> {
     cursor: Cursor<'a>,
     places: Places<'a>,
     scene: SceneBuilder,
-    oddities: Oddities,
+    diagnostics: Diagnostics,
     mesh: Mesh,
     /// The corners of the current loop.
     corners: Vec<Vec3>,
@@ -97,7 +97,7 @@ impl Ascii<'_, '_, '_> {
         for channel in &mut colour {
             let Some(number) = parse_f32(self.cursor.word()) else {
                 let places = &self.places;
-                self.oddities.note("a colour is not three numbers, and is ignored", || places.at(start));
+                self.diagnostics.note("a colour is not three numbers, and is ignored", || places.at(start));
                 return;
             };
             *channel = number;
@@ -140,7 +140,7 @@ impl Ascii<'_, '_, '_> {
         if !point.is_finite() {
             let (places, offset) = (&self.places, self.cursor.offset());
             let what = "a vertex has numbers that are infinite or not numbers (NaN); it is kept";
-            self.oddities.note(what, || places.at(offset));
+            self.diagnostics.note(what, || places.at(offset));
         }
         self.reading.budget.take::<(Vec3, [u32; 3], Rgb)>(1, self.source.name)?;
         self.corners.push(point);
@@ -173,7 +173,7 @@ impl Ascii<'_, '_, '_> {
             let places = &self.places;
             let what =
                 "a concave polygon has too many corners to triangulate exactly and is treated as convex";
-            self.oddities.note(what, || places.at(start));
+            self.diagnostics.note(what, || places.at(start));
         }
         Ok(())
     }

@@ -3,7 +3,7 @@
 use super::facet_colours::FacetColours;
 use bilux_import::FormatError;
 use bilux_import::bytes::text::whole_file;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::{Reading, Source};
 use bilux_math::{DVec3, Rgb, Vec3};
 use bilux_scene::{Mesh, Object, SceneBuilder};
@@ -27,13 +27,13 @@ pub(super) fn fits(bytes: &[u8]) -> bool {
 
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
     let mut scene = SceneBuilder::default();
-    let mut oddities = Oddities::default();
-    for (header, triangles) in solids(source, &mut oddities)? {
+    let mut diagnostics = Diagnostics::default();
+    for (header, triangles) in solids(source, &mut diagnostics)? {
         if !triangles.is_empty() {
-            add_solid(reading, source, (header, triangles), &mut scene, &mut oddities)?;
+            add_solid(reading, source, (header, triangles), &mut scene, &mut diagnostics)?;
         }
     }
-    oddities.into_warnings(&mut scene);
+    diagnostics.into_warnings(&mut scene);
     Ok(scene)
 }
 
@@ -41,7 +41,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
 type Solid<'a> = (&'a [u8], &'a [u8]);
 
 /// The solids of a file: usually one, but some programs write several files into one.
-fn solids<'a>(source: &Source<'a>, oddities: &mut Oddities) -> Result<Vec<Solid<'a>>, FormatError> {
+fn solids<'a>(source: &Source<'a>, diagnostics: &mut Diagnostics) -> Result<Vec<Solid<'a>>, FormatError> {
     let mut rest = source.bytes;
     let mut solids = Vec::new();
     while let Some(count) = claimed(rest) {
@@ -54,11 +54,11 @@ fn solids<'a>(source: &Source<'a>, oddities: &mut Oddities) -> Result<Vec<Solid<
             break;
         }
     }
-    if rest.is_empty() { Ok(solids) } else { only_solid(source, oddities).map(|solid| vec![solid]) }
+    if rest.is_empty() { Ok(solids) } else { only_solid(source, diagnostics).map(|solid| vec![solid]) }
 }
 
 /// The solid of a file whose size is not what its header says.
-fn only_solid<'a>(source: &Source<'a>, oddities: &mut Oddities) -> Result<Solid<'a>, FormatError> {
+fn only_solid<'a>(source: &Source<'a>, diagnostics: &mut Diagnostics) -> Result<Solid<'a>, FormatError> {
     let whole = || whole_file(source.name);
     let Some(stated) = claimed(source.bytes) else {
         let message = format!(
@@ -75,7 +75,7 @@ fn only_solid<'a>(source: &Source<'a>, oddities: &mut Oddities) -> Result<Solid<
         0 => room,
         _ if is_whole => room,
         stated if stated <= room => {
-            oddities.note("there are bytes after the last triangle; they are ignored", whole);
+            diagnostics.note("there are bytes after the last triangle; they are ignored", whole);
             stated
         }
         _ => {
@@ -90,7 +90,7 @@ fn only_solid<'a>(source: &Source<'a>, oddities: &mut Oddities) -> Result<Solid<
         let what = format!(
             "the header says {stated} triangles, but the file has {count}: the header is wrong, and all are read"
         );
-        oddities.note(&what, whole);
+        diagnostics.note(&what, whole);
     }
     Ok((header, &body[..count as usize * TRIANGLE]))
 }
@@ -100,13 +100,13 @@ fn add_solid(
     source: &Source,
     (header, bytes): Solid,
     scene: &mut SceneBuilder,
-    oddities: &mut Oddities,
+    diagnostics: &mut Diagnostics,
 ) -> Result<(), FormatError> {
     let whole = || whole_file(source.name);
     let triangles = || bytes.chunks_exact(TRIANGLE);
     let count = triangles().len();
     let colours = FacetColours::of(header, triangles().map(attribute));
-    colours.report(oddities, whole);
+    colours.report(diagnostics, whole);
     let colour_size = if colours.are_there() { size_of::<[Rgb; 3]>() } else { 0 };
     let size = size_of::<([Vec3; 3], [u32; 3])>() + colour_size;
     reading.budget.take_bytes((count * size) as u64, source.name)?;
@@ -129,7 +129,7 @@ fn add_solid(
         mesh.vertex_kd.extend(triangles().flat_map(|triangle| [colours.at(attribute(triangle)); 3]));
     }
     if mesh.positions.iter().any(|p| !p.is_finite()) {
-        oddities
+        diagnostics
             .note("some triangles have numbers that are infinite or not numbers (NaN); they are kept", whole);
     }
     let name = mesh.name.clone();

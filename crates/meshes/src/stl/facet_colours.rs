@@ -2,7 +2,7 @@
 //! and SolidView, and that of Materialise Magics.
 
 use bilux_import::geometry::colours::decoded;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_math::Rgb;
 use bilux_scene::Span;
 
@@ -58,11 +58,12 @@ impl FacetColours {
     }
 
     /// Names what is not shown.
-    pub(super) fn report(&self, oddities: &mut Oddities, at: impl FnOnce() -> Span) {
+    pub(super) fn report(&self, diagnostics: &mut Diagnostics, at: impl FnOnce() -> Span) {
         match self.convention {
-            Convention::None { has_data: true } => oddities.not_used("two bytes after each triangle", at),
+            Convention::None { has_data: true } => diagnostics.not_used("two bytes after each triangle", at),
             Convention::Magics { has_more: true, .. } => {
-                oddities.not_shown("the opacity and the material of the header's COLOR= and MATERIAL=", at);
+                diagnostics
+                    .not_shown("the opacity and the material of the header's COLOR= and MATERIAL=", at);
             }
             _ => {}
         }

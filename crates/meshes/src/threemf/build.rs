@@ -12,7 +12,7 @@ use bilux_import::FormatError;
 use bilux_import::bytes::text::whole_file;
 use bilux_import::geometry::sharing::share_trees;
 use bilux_import::input::authors::program;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::{Reading, Source};
 use bilux_import::input::sink::Sink;
 use bilux_math::{DMat4, Transform};
@@ -29,7 +29,7 @@ pub(super) fn scene(
     package: &Package,
 ) -> Result<SceneBuilder, FormatError> {
     let mut sink = Sink::for_bare_files();
-    let model = parts(reading, package, &mut sink.oddities)?;
+    let model = parts(reading, package, &mut sink.diagnostics)?;
     if model.items.is_empty() {
         let message = "nothing in it is to be built: its build is empty";
         return Err(FormatError::malformed(message, whole_file(&package.named(&model.parts[0]))));
@@ -59,8 +59,12 @@ pub(super) fn scene(
 }
 
 /// Reads the main part, and those that it refers to.
-fn parts(reading: &mut Reading, package: &Package, oddities: &mut Oddities) -> Result<Model, FormatError> {
-    let main = package.model_part(reading, oddities)?;
+fn parts(
+    reading: &mut Reading,
+    package: &Package,
+    diagnostics: &mut Diagnostics,
+) -> Result<Model, FormatError> {
+    let main = package.model_part(reading, diagnostics)?;
     let mut model = Model { parts: vec![main], ..Model::default() };
     let mut next = 0;
     while let Some(part) = model.parts.get(next).cloned() {
@@ -70,7 +74,7 @@ fn parts(reading: &mut Reading, package: &Package, oddities: &mut Oddities) -> R
             return Err(FormatError::malformed(message, whole_file(&package.named(&model.parts[0]))));
         };
         let (xml, file) = (package.xml(reading, &member)?, package.named(&member));
-        PartReader { reading, model: &mut model, oddities, xml, part: next, file }.read()?;
+        PartReader { reading, model: &mut model, diagnostics, xml, part: next, file }.read()?;
         next += 1;
     }
     Ok(model)
@@ -102,7 +106,7 @@ impl Builder<'_, '_> {
     fn build(&mut self, mut model: Model) -> Result<Model, FormatError> {
         for item in std::mem::take(&mut model.items) {
             if !item.is_printed {
-                self.sink.oddities.not_shown("objects that are not to be printed", || item.at.clone());
+                self.sink.diagnostics.not_shown("objects that are not to be printed", || item.at.clone());
                 continue;
             }
             let place = Place { transform: item.transform, extruder: 1, depth: 0 };
@@ -133,11 +137,11 @@ impl Builder<'_, '_> {
         match model.objects[number].role {
             Role::Printed => {}
             Role::Support => {
-                self.sink.oddities.not_shown("supports", || model.objects[number].at.clone());
+                self.sink.diagnostics.not_shown("supports", || model.objects[number].at.clone());
                 return Ok(());
             }
             Role::Modifier => {
-                self.sink.oddities.not_shown("modifiers", || model.objects[number].at.clone());
+                self.sink.diagnostics.not_shown("modifiers", || model.objects[number].at.clone());
                 return Ok(());
             }
             Role::Other if place.depth == 0 => {
@@ -147,7 +151,7 @@ impl Builder<'_, '_> {
             }
             Role::Other => {
                 self.sink
-                    .oddities
+                    .diagnostics
                     .not_shown("objects of the type 'other'", || model.objects[number].at.clone());
                 return Ok(());
             }
@@ -178,7 +182,7 @@ impl Builder<'_, '_> {
             let part = settings.and_then(|settings| settings.parts.get(&component.object.id).copied());
             let part = part.unwrap_or_default();
             if let Some(what) = part.unprinted {
-                self.sink.oddities.not_shown(what, || component.at.clone());
+                self.sink.diagnostics.not_shown(what, || component.at.clone());
                 continue;
             }
             let inner = Place {
@@ -201,7 +205,7 @@ impl Builder<'_, '_> {
         at: &Span,
     ) -> Result<(), FormatError> {
         let Some(place) = Transform::from_matrix(transform) else {
-            self.sink.oddities.note("a transform flattens an object, which is left out", || at.clone());
+            self.sink.diagnostics.note("a transform flattens an object, which is left out", || at.clone());
             return Ok(());
         };
         if self.meshes[number].is_none() {
@@ -217,7 +221,7 @@ impl Builder<'_, '_> {
                 has_filaments: self.has_filaments,
                 settings: self.settings.get(&object.id).filter(|_| object.part == 0),
             };
-            let made = pieces(self.reading, self.file, &whole, data, &mut self.sink.oddities)?;
+            let made = pieces(self.reading, self.file, &whole, data, &mut self.sink.diagnostics)?;
             self.meshes[number] = Some(made);
         }
         for piece in self.meshes[number].clone().unwrap_or_default() {

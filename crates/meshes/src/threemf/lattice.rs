@@ -43,7 +43,7 @@ impl PartReader<'_, '_> {
         let mut lattice = Lattice::default();
         if attributes.is_clipped {
             let at = self.xml.here();
-            self.oddities.not_shown("the mesh that clips a beam lattice (all beams are shown)", || at);
+            self.diagnostics.not_shown("the mesh that clips a beam lattice (all beams are shown)", || at);
         }
         while let Some(child) = self.xml.child(level)? {
             let inside = child.inside;

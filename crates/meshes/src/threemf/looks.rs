@@ -170,7 +170,7 @@ impl Looks {
                 TexturedAppearance::Specular { base, .. } => {
                     texture.factor = base;
                     let at = model.pictures[picture].at.clone();
-                    sink.oddities.not_shown("pictures of specular colours and glossiness", || at);
+                    sink.diagnostics.not_shown("pictures of specular colours and glossiness", || at);
                 }
             }
         }
@@ -251,7 +251,7 @@ fn solid(model: &Model, group: usize, index: u32, sink: &mut Sink) -> Spec {
         Some(appearance) => show(&mut spec, *appearance, colour.map_or(Rgb::WHITE, |c| c.rgb), model.unit),
         None => {
             let what = format!("there are no display properties {id} for a material: its colour is shown");
-            sink.oddities.note(&what, Default::default);
+            sink.diagnostics.note(&what, Default::default);
         }
     }
     spec

@@ -24,7 +24,7 @@ impl PartReader<'_, '_> {
                 (Namespace::Core, "vertices") => {
                     if child.attributes().flatten().any(|(key, _)| key.contains(':')) {
                         let at = child.at();
-                        self.oddities.note("vertices have attributes of an unknown kind", || at);
+                        self.diagnostics.note("vertices have attributes of an unknown kind", || at);
                     }
                     self.vertices(inside, &mut mesh)?;
                 }
@@ -35,7 +35,7 @@ impl PartReader<'_, '_> {
                 }
                 (Namespace::Named(what), _) => {
                     let at = child.at();
-                    self.oddities.not_shown(what, || at);
+                    self.diagnostics.not_shown(what, || at);
                 }
                 (Namespace::Undeclared, name) => return Err(super::part::undeclared(&child, name)),
                 _ => {}
@@ -78,7 +78,7 @@ impl PartReader<'_, '_> {
             let position = Vec3::new(x, y, z);
             if !position.is_finite() {
                 let at = element.at();
-                self.oddities
+                self.diagnostics
                     .note("a vertex has numbers that are infinite or not numbers (NaN); it is kept", || at);
             }
             self.reading.budget.take::<Vec3>(1, &file)?;
@@ -127,7 +127,8 @@ impl PartReader<'_, '_> {
             }
             if a == b || b == c || a == c {
                 let at = element.at();
-                self.oddities.note("a triangle has two corners at the same vertex, so it has no area", || at);
+                self.diagnostics
+                    .note("a triangle has two corners at the same vertex, so it has no area", || at);
             }
             self.reading.budget.take::<[u32; 3]>(1, &file)?;
             let mut properties = None;
@@ -139,7 +140,7 @@ impl PartReader<'_, '_> {
                     (None, None) => {
                         let at = element.at();
                         let what = "a triangle has properties (p1), but neither it nor its object says of what (pid)";
-                        self.oddities.note(what, || at);
+                        self.diagnostics.note(what, || at);
                     }
                     _ => {}
                 }

@@ -42,7 +42,7 @@ impl PartReader<'_, '_> {
         };
         if element.of(Namespace::Slices, "slicestackid").is_some() {
             let at = element.at();
-            self.oddities.not_shown("slices (the mesh is shown)", || at);
+            self.diagnostics.not_shown("slices (the mesh is shown)", || at);
         }
         // Registered at the end: an object cannot contain itself.
         let (content, unprinted) = self.content(inside, property)?;
@@ -80,7 +80,7 @@ impl PartReader<'_, '_> {
                 (Namespace::Named(what), _) => {
                     let at = child.at();
                     content.get_or_insert(Content::Components(Vec::new()));
-                    self.oddities.not_shown(what, || at);
+                    self.diagnostics.not_shown(what, || at);
                 }
                 (Namespace::Undeclared, name) => return Err(undeclared(&child, name)),
                 _ => {}

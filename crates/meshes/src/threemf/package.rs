@@ -3,7 +3,7 @@
 use super::xml::{Level, Xml};
 use bilux_import::FormatError;
 use bilux_import::bytes::text::whole_file;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::{Reading, Source};
 use bilux_scene::Span;
 use std::collections::HashMap;
@@ -124,7 +124,7 @@ impl Package {
     pub(super) fn model_part(
         &self,
         reading: &mut Reading,
-        oddities: &mut Oddities,
+        diagnostics: &mut Diagnostics,
     ) -> Result<String, FormatError> {
         let all = self.relationships(reading, RELATIONSHIPS)?;
         let whole = || whole_file(&self.named(RELATIONSHIPS));
@@ -144,7 +144,7 @@ impl Package {
                 return Err(FormatError::malformed(message, whole()));
             };
             let what = format!("no relationship names the part with the 3D model: '{member}' is taken");
-            oddities.note(&what, whole);
+            diagnostics.note(&what, whole);
             return Ok(member);
         };
         if let Some(second) = models.next() {
@@ -160,12 +160,12 @@ impl Package {
             Some(_) => self.check_type(reading, member, &model.at)?,
             None => {
                 let what = format!("the file has no '{TYPES}', which says what its parts are");
-                oddities.note(&what, || whole_file(&self.name));
+                diagnostics.note(&what, || whole_file(&self.name));
             }
         }
-        self.check_targets(reading, "", &all, oddities)?;
+        self.check_targets(reading, "", &all, diagnostics)?;
         let of_model = self.relationships(reading, &relationships_of(member))?;
-        self.check_targets(reading, member, &of_model, oddities)?;
+        self.check_targets(reading, member, &of_model, diagnostics)?;
         Ok(member.to_owned())
     }
 
@@ -175,7 +175,7 @@ impl Package {
         _: &Reading,
         from: &str,
         all: &[Relationship],
-        oddities: &mut Oddities,
+        diagnostics: &mut Diagnostics,
     ) -> Result<(), FormatError> {
         for relationship in all {
             let target = &relationship.target;
@@ -188,12 +188,12 @@ impl Package {
             if self.member(&resolved(from, target)).is_none() {
                 let what =
                     format!("a relationship names the part '{target}', which the file does not contain");
-                oddities.note(&what, || relationship.at.clone());
+                diagnostics.note(&what, || relationship.at.clone());
             }
         }
         let mut tickets = all.iter().filter(|relationship| relationship.kind == PRINT_TICKET);
         if let (Some(_), Some(second)) = (tickets.next(), tickets.next()) {
-            oddities.note("a model has more than one print ticket", || second.at.clone());
+            diagnostics.note("a model has more than one print ticket", || second.at.clone());
         }
         Ok(())
     }

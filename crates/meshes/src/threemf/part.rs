@@ -5,7 +5,7 @@ use super::namespaces::{DRAFT, Namespace};
 use super::package::resolved;
 use super::xml::{Element, Level, Xml};
 use bilux_import::FormatError;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::Reading;
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use std::sync::Arc;
 pub(super) struct PartReader<'a, 'o> {
     pub(super) reading: &'a mut Reading<'o>,
     pub(super) model: &'a mut Model,
-    pub(super) oddities: &'a mut Oddities,
+    pub(super) diagnostics: &'a mut Diagnostics,
     pub(super) xml: Xml,
     /// The number of the part.
     pub(super) part: usize,
@@ -48,19 +48,19 @@ impl PartReader<'_, '_> {
         check_extensions(&root)?;
         if root.get("xmlns") == Some(DRAFT) {
             let at = root.at();
-            self.oddities.note("the model is of the draft of 2013: it is read as 3MF of today", || at);
+            self.diagnostics.note("the model is of the draft of 2013: it is read as 3MF of today", || at);
         }
         let unit = unit(&root)?;
         if root.get("xml:space").is_some() {
             let at = root.at();
-            self.oddities
+            self.diagnostics
                 .note("the model says how to treat white space (xml:space), which 3MF forbids", || at);
         }
         let (level, at) = (root.inside, root.at());
         if self.part == 0 {
             self.model.unit = unit;
         } else if self.model.unit != unit {
-            self.oddities.note(
+            self.diagnostics.note(
                 "a part of the file has another unit than the first; its numbers are taken as they are",
                 || at.clone(),
             );
@@ -87,7 +87,7 @@ impl PartReader<'_, '_> {
         for (is_there, name) in [(has_resources, "resources"), (has_build, "build")] {
             // The build of another part than the first is not used. [3MF Production 1.1]
             if !is_there && name == "build" && self.part != 0 {
-                self.oddities.note("a part of the file has no element 'build'", || at.clone());
+                self.diagnostics.note("a part of the file has no element 'build'", || at.clone());
             } else if !is_there {
                 let message =
                     format!("this model has no element '{name}': it was cut off, or its program is faulty");
@@ -110,7 +110,7 @@ impl PartReader<'_, '_> {
         };
         let text = self.xml.text(inside)?;
         if !name.contains(':') && !METADATA.contains(&&*name) {
-            self.oddities
+            self.diagnostics
                 .remark("metadata without a prefix have names that the specification does not list", || {
                     at.clone()
                 });
@@ -120,7 +120,7 @@ impl PartReader<'_, '_> {
             self.model.application = text.chars().take(100).collect();
         }
         if !self.model.metadata.insert(name) {
-            self.oddities.note("two metadata have the same name", || at);
+            self.diagnostics.note("two metadata have the same name", || at);
         }
         Ok(())
     }
@@ -152,7 +152,7 @@ impl PartReader<'_, '_> {
         let Some(element) = self.xml.current() else { return Ok(0) };
         let (id, at) = (element.need_index("id")?, element.at());
         if id == 0 {
-            self.oddities.note("an id is 0: ids begin at 1", || at);
+            self.diagnostics.note("an id is 0: ids begin at 1", || at);
         }
         Ok(id)
     }

@@ -115,7 +115,7 @@ impl Pictures {
             Err(error @ FormatError::TooLarge { .. }) => return Err(error),
             Err(error) => {
                 let what = format!("a texture is replaced by a magenta checker: {}", error.without_place());
-                sink.oddities.note(&what, || picture.at.clone());
+                sink.diagnostics.note(&what, || picture.at.clone());
                 None
             }
         };

@@ -9,7 +9,7 @@ use super::slicers::{Leaf, ObjectSettings, leaves};
 use bilux_import::FormatError;
 use bilux_import::bytes::text::whole_file;
 use bilux_import::geometry::normals::{BY_ANGLE, CornerNormals, Faces};
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::Reading;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::Mesh;
@@ -91,7 +91,7 @@ pub(super) fn pieces(
     file: &str,
     whole: &Whole,
     mut data: MeshData,
-    oddities: &mut Oddities,
+    diagnostics: &mut Diagnostics,
 ) -> Result<Vec<Piece>, FormatError> {
     let mut pieces = Vec::new();
     if let Some(lattice) = data.lattice.take() {
@@ -116,7 +116,7 @@ pub(super) fn pieces(
         let code = paint.next_if(|(painted, _)| *painted as usize == triangle).map(|(_, code)| code);
         let part = whole.settings.map(|all| all.of_triangle(triangle as u32)).unwrap_or_default();
         if let Some(what) = part.unprinted {
-            oddities.not_shown(what, || whole_file(&file.into()));
+            diagnostics.not_shown(what, || whole_file(&file.into()));
             continue;
         }
         let own = data.properties.get(triangle).filter(|own| own.group != NONE).unwrap_or(&own);
@@ -126,7 +126,7 @@ pub(super) fn pieces(
         if let (Some(code), Look::Filament(_)) = (code, look) {
             let leaves = leaves(code).unwrap_or_else(|| {
                 let what = "a triangle is painted by a code that is not understood";
-                oddities.note(what, || whole_file(&file.into()));
+                diagnostics.note(what, || whole_file(&file.into()));
                 vec![Leaf::whole(0)]
             });
             reading.budget.take::<[[Vec3; 3]; 3]>(leaves.len(), file)?;

@@ -35,11 +35,11 @@ impl PartReader<'_, '_> {
                 (Namespace::Slices, "slicestack") => {
                     let (id, at) = (child.need_index("id")?, child.at());
                     Self::register(self.reading, self.model, &child, self.part, id, Resource::Other)?;
-                    self.oddities.not_shown("slices (the mesh is shown)", || at);
+                    self.diagnostics.not_shown("slices (the mesh is shown)", || at);
                 }
                 (Namespace::Named(what), _) => {
                     let at = child.at();
-                    self.oddities.not_shown(what, || at);
+                    self.diagnostics.not_shown(what, || at);
                 }
                 (Namespace::Undeclared, name) => return Err(undeclared(&child, name)),
                 _ => {}
@@ -152,7 +152,7 @@ impl PartReader<'_, '_> {
                 Some(Resource::Picture(_)) => {
                     let at = element.at();
                     let what = "a layer names a texture2d instead of a texture2dgroup, and is left out";
-                    self.oddities.note(what, || at);
+                    self.diagnostics.note(what, || at);
                     continue;
                 }
                 _ => {
@@ -200,7 +200,7 @@ impl PartReader<'_, '_> {
                 let is_there = (index as usize) < count;
                 if !is_there {
                     let what = "pindices names an entry that its layer does not have; it has the first one";
-                    self.oddities.note(what, || element.at());
+                    self.diagnostics.note(what, || element.at());
                 }
                 indices.push(if is_there { index } else { 0 });
             }

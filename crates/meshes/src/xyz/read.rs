@@ -5,7 +5,7 @@ use bilux_import::FormatError;
 use bilux_import::bytes::float::parse_f64;
 use bilux_import::bytes::text::{Cursor, Places, no_text, quoted};
 use bilux_import::geometry::colours::{Stored, UNCOLOURED, decode};
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::{Reading, Source};
 use bilux_import::meshes::cloud::{Cloud, SAMPLES};
 use bilux_math::colour::srgb_decode;
@@ -23,7 +23,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         cloud: Cloud::default(),
         colours: Vec::new(),
         intensities: Vec::new(),
-        oddities: Oddities::default(),
+        diagnostics: Diagnostics::default(),
     };
     reader.lines().map_err(|error| no_text(error, source.bytes))?;
     reader.finish()
@@ -39,7 +39,7 @@ struct Xyz<'a, 'o, 'r> {
     /// As stored in the file.
     colours: Vec<Rgb>,
     intensities: Vec<f32>,
-    oddities: Oddities,
+    diagnostics: Diagnostics,
 }
 
 /// A line of numbers.
@@ -90,7 +90,7 @@ impl Xyz<'_, '_, '_> {
                         let message = "a point is expected here: three numbers or more, x y z [r g b]";
                         return Err(FormatError::malformed(message, places.at(start)));
                     }
-                    self.oddities.note(words, || places.at(start));
+                    self.diagnostics.note(words, || places.at(start));
                 }
             }
             lines += 1;
@@ -103,7 +103,7 @@ impl Xyz<'_, '_, '_> {
         let columns = Columns::guessed(count, &self.rows_from(start, FIRST)?);
         if (0..count).any(|column| !columns.shows(column)) {
             let places = self.places;
-            self.oddities.not_used("further numbers of each point", || places.at(start));
+            self.diagnostics.not_used("further numbers of each point", || places.at(start));
         }
         Ok(columns)
     }
@@ -112,7 +112,7 @@ impl Xyz<'_, '_, '_> {
     fn named_columns(&mut self, names: &[String], start: usize) -> Option<Columns> {
         let (columns, places) = (Columns::from_header(names)?, self.places);
         for (_, name) in names.iter().enumerate().filter(|(column, _)| !columns.shows(*column)) {
-            self.oddities.not_used(&quoted(name.as_bytes()), || places.at(start));
+            self.diagnostics.not_used(&quoted(name.as_bytes()), || places.at(start));
         }
         Some(columns)
     }
@@ -203,7 +203,7 @@ impl Xyz<'_, '_, '_> {
         let (places, start) = (self.places, row.start);
         if columns.position.iter().any(|&column| column >= row.count) {
             let what = "a line has too few numbers for a point, and is left out";
-            self.oddities.note(what, || places.at(start));
+            self.diagnostics.note(what, || places.at(start));
             return Ok(());
         }
         self.reading.budget.take::<(DVec3, u32)>(1, self.source.name)?;
@@ -214,7 +214,7 @@ impl Xyz<'_, '_, '_> {
         let p = DVec3::from(columns.position.map(|column| row.numbers[column]));
         if !p.is_finite() {
             let what = "a point has numbers that are infinite or not numbers (NaN), and is left out";
-            self.oddities.note(what, || places.at(start));
+            self.diagnostics.note(what, || places.at(start));
             return Ok(());
         }
         self.cloud.push(p);
@@ -242,7 +242,7 @@ impl Xyz<'_, '_, '_> {
             self.cloud.colours = grey;
         }
         let mut scene = self.cloud.into_scene(self.source.stem());
-        self.oddities.into_warnings(&mut scene);
+        self.diagnostics.into_warnings(&mut scene);
         Ok(scene)
     }
 }

@@ -51,7 +51,7 @@ pub(super) fn settings(
 /// Looks up what does not matter here, and reports the rest.
 fn plug_unused(maker: &mut Maker, plugin: &Plugin, names: &[&'static str]) {
     plugin.ignore(names);
-    plugin.report_unused(&mut maker.oddities);
+    plugin.report_unused(&mut maker.diagnostics);
 }
 
 fn read_film(maker: &mut Maker, film: &Rc<Plugin>, settings: &mut Parameters) -> Result<(), FormatError> {

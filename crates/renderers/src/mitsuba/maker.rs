@@ -5,7 +5,7 @@ use super::plugin::{Plugin, Value as Given};
 use super::values::GivenColour;
 use bilux_import::FormatError;
 use bilux_import::appearance::texture_or_value::TextureOrValue;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::Reading;
 use bilux_math::Rgb;
 use bilux_scene::{Span, Spec, Texture, Value};
@@ -37,7 +37,7 @@ pub(super) struct Maker<'p, 'o> {
     pub(super) reading: &'p mut Reading<'o>,
     pub(super) document: &'p Document,
     tables: Tables,
-    pub(super) oddities: Oddities,
+    pub(super) diagnostics: Diagnostics,
     /// The textures of the scene, and their indices.
     pub(super) in_scene: Vec<Arc<Texture>>,
     placed: HashMap<*const Texture, usize>,
@@ -62,13 +62,13 @@ impl<'p, 'o> Maker<'p, 'o> {
         reading: &'p mut Reading<'o>,
         document: &'p Document,
         tables: Tables,
-        oddities: Oddities,
+        diagnostics: Diagnostics,
     ) -> Maker<'p, 'o> {
         Maker {
             reading,
             document,
             tables,
-            oddities,
+            diagnostics,
             in_scene: Vec::new(),
             placed: HashMap::new(),
             made: HashMap::new(),
@@ -80,12 +80,12 @@ impl<'p, 'o> Maker<'p, 'o> {
 
     /// Counts something odd.
     pub(super) fn note(&mut self, what: &str, at: &Span) {
-        self.oddities.note(what, || at.clone());
+        self.diagnostics.note(what, || at.clone());
     }
 
     /// Names something that the picture does not show.
     pub(super) fn not_shown(&mut self, plugin: &Plugin) {
-        self.oddities.not_shown(&plugin.named(), || plugin.at.clone());
+        self.diagnostics.not_shown(&plugin.named(), || plugin.at.clone());
     }
 
     /// The files of the scene.
@@ -209,7 +209,7 @@ impl<'p, 'o> Maker<'p, 'o> {
             return Ok(known.clone());
         }
         let made = self.within(plugin, |maker| (maker.tables.texture)(maker, plugin, meaning))?;
-        plugin.report_unused(&mut self.oddities);
+        plugin.report_unused(&mut self.diagnostics);
         self.made.insert(key, made.clone());
         Ok(made)
     }

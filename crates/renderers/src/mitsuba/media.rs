@@ -21,7 +21,7 @@ pub(super) fn medium(maker: &mut Maker, plugin: &Rc<Plugin>) -> Result<Medium, F
     let mut medium = maker.within(plugin, |maker| make(maker, plugin))?;
     medium.anisotropy = anisotropy(maker, plugin)?;
     plugin.ignore(&["sample_emitters", "has_spectral_extinction", "method", "step_size"]);
-    plugin.report_unused(&mut maker.oddities);
+    plugin.report_unused(&mut maker.diagnostics);
     Ok(medium)
 }
 
@@ -47,7 +47,9 @@ fn split(extinction: Rgb, albedo: Rgb, scale: f32) -> [Rgb; 2] {
 fn homogeneous(maker: &mut Maker, plugin: &Plugin) -> Result<Medium, FormatError> {
     let scale = plugin.number_or("scale", 1.0)? as f32;
     if plugin.has("material") {
-        maker.oddities.not_shown(&format!("'material' of {}", plugin.named()), || plugin.place("material"));
+        maker
+            .diagnostics
+            .not_shown(&format!("'material' of {}", plugin.named()), || plugin.place("material"));
     }
     // Those of version 0.5.
     let absorption = maker.even(plugin, "sigma_a", Meaning::Number)?;
@@ -79,7 +81,9 @@ fn heterogeneous(maker: &mut Maker, plugin: &Plugin) -> Result<Medium, FormatErr
         None => (maker.even(plugin, name, Meaning::Number)?.unwrap_or(Rgb::WHITE), None),
     };
     if plugin.has("emission") {
-        maker.oddities.not_shown(&format!("'emission' of {}", plugin.named()), || plugin.place("emission"));
+        maker
+            .diagnostics
+            .not_shown(&format!("'emission' of {}", plugin.named()), || plugin.place("emission"));
     }
     let [absorption, scattering] = split(colour, albedo, scale);
     Ok(Medium { absorption, scattering, density, ..Medium::default() })
@@ -111,7 +115,7 @@ fn volume(maker: &mut Maker, plugin: &Plugin, name: &'static str) -> Result<Opti
     let to_world = volume.placement("to_world")?.map_or(DMat4::IDENTITY, |placement| placement.start());
     // Without the box of its file, it fills the unit cube.
     let to_world = if uses_box { to_world } else { to_world * to_unit_cube(&density) };
-    volume.report_unused(&mut maker.oddities);
+    volume.report_unused(&mut maker.diagnostics);
     Ok(Some(GridVolume { density: Density { grid: density, to_world }, channels }))
 }
 

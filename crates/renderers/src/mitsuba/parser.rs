@@ -9,9 +9,9 @@ use super::variables::Variables;
 use bilux_import::FormatError;
 use bilux_import::appearance::spectra::{Spectrum, planck};
 use bilux_import::bytes::xml::Xml;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::includes::Includes;
 use bilux_import::input::names::{shortened, unknown};
-use bilux_import::input::oddities::Oddities;
 use bilux_import::input::reading::{Reading, Source};
 use bilux_math::{DMat4, DVec3};
 use bilux_scene::{SceneError, Span};
@@ -67,7 +67,7 @@ const MAX_DEPTH: usize = 64;
 /// Reads elements.
 pub(super) struct Parser<'p, 'o> {
     pub(super) reading: &'p mut Reading<'o>,
-    pub(super) oddities: Oddities,
+    pub(super) diagnostics: Diagnostics,
     pub(super) document: Document,
     pub(super) includes: Includes,
     pub(super) variables: Variables,
@@ -109,7 +109,7 @@ impl Parser<'_, '_> {
                 Value::Reference(_) => {}
                 _ => {
                     let what = format!("'{}' of the scene is not used", shortened(&child.name));
-                    self.oddities.note(&what, || child.at);
+                    self.diagnostics.note(&what, || child.at);
                 }
             }
         }

@@ -220,8 +220,8 @@ impl<'p, 'o> Placer<'p, 'o> {
             spec = Spec { span: spec.span, ..Spec::new(&spec.name, "interface") };
         }
         if !medium.is_clear() {
-            let (reading, oddities) = (&mut *self.maker.reading, &mut self.maker.oddities);
-            fill(&mut spec, &medium, to_world, &plugin.at, (reading, oddities))?;
+            let (reading, diagnostics) = (&mut *self.maker.reading, &mut self.maker.diagnostics);
+            fill(&mut spec, &medium, to_world, &plugin.at, (reading, diagnostics))?;
         }
         if let Some(emission) = emission {
             spec = emission.on(spec, &mut self.maker, plugin);

@@ -3,8 +3,8 @@
 use super::transforms::Placement;
 use super::values::GivenColour;
 use bilux_import::FormatError;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::names::{shortened, unknown};
-use bilux_import::input::oddities::Oddities;
 use bilux_math::DVec3;
 use bilux_scene::error::nearest_name;
 use bilux_scene::{SceneError, Span};
@@ -179,14 +179,14 @@ impl Plugin {
     }
 
     /// Warns about properties that nothing looked up.
-    pub(super) fn report_unused(&self, oddities: &mut Oddities) {
+    pub(super) fn report_unused(&self, diagnostics: &mut Diagnostics) {
         let is_part = |value: &Value| matches!(value, Value::Object(_) | Value::Reference(_));
         for property in self.properties.iter().filter(|p| !p.used.get() && !is_part(&p.value)) {
             let known: Vec<String> = self.asked.borrow().iter().map(|name| (*name).to_owned()).collect();
             let meant = nearest_name(&shortened(&property.name), &known);
             let meant = meant.map_or_else(String::new, |name| format!("; did you mean '{name}'?"));
             let what = format!("'{}' of {} is not used{meant}", shortened(&property.name), self.named());
-            oddities.note(&what, || property.at.clone());
+            diagnostics.note(&what, || property.at.clone());
         }
     }
 }

@@ -13,8 +13,8 @@ use super::variables::Variables;
 use bilux_import::FormatError;
 use bilux_import::bytes::text::whole_file;
 use bilux_import::geometry::sharing::share_trees;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::includes::Includes;
-use bilux_import::input::oddities::Oddities;
 use bilux_import::input::reading::{Reading, Source};
 use bilux_import::input::sink::Sink;
 use bilux_scene::{Parameters, SceneBuilder};
@@ -28,15 +28,15 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     let mut parser = Parser {
         variables: Variables::new(&reading.options.definitions),
         reading,
-        oddities: Oddities::default(),
+        diagnostics: Diagnostics::default(),
         document: Document::default(),
         includes: Includes::of(own_file(source)),
     };
     parser.document.files.folder = source.folder.map(Path::to_owned);
     parser.scene(source)?;
     parser.variables.check_used(&whole_file(source.name))?;
-    let Parser { reading, oddities, document, .. } = parser;
-    let mut placer = Placer::new(Maker::new(reading, &document, TABLES, oddities));
+    let Parser { reading, diagnostics, document, .. } = parser;
+    let mut placer = Placer::new(Maker::new(reading, &document, TABLES, diagnostics));
     let mut seen = Seen::default();
     for part in &document.parts {
         seen.part(part, &mut placer)?;
@@ -96,10 +96,10 @@ fn finish(placer: Placer, seen: Seen, source: &Source) -> Result<SceneBuilder, F
         notes: shapes.notes,
         ..SceneBuilder::default()
     };
-    let mut sink = Sink { scene, oddities: maker.oddities };
+    let mut sink = Sink { scene, diagnostics: maker.diagnostics };
     share_trees(&mut sink.scene);
     if sink.scene.objects.is_empty() && sink.scene.lights.is_empty() {
-        sink.oddities.note("there is nothing to render in this file", || whole_file(source.name));
+        sink.diagnostics.note("there is nothing to render in this file", || whole_file(source.name));
     }
     Ok(sink.finish())
 }

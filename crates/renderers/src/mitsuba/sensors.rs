@@ -88,9 +88,9 @@ pub(super) fn cameras(maker: &mut Maker, sensor: &Rc<Plugin>) -> Result<Vec<Came
     ];
     sensor.ignore(&ignored);
     if sensor.has("kc") {
-        maker.oddities.not_shown("the distortion of a sensor", || sensor.place("kc"));
+        maker.diagnostics.not_shown("the distortion of a sensor", || sensor.place("kc"));
     }
-    sensor.report_unused(&mut maker.oddities);
+    sensor.report_unused(&mut maker.diagnostics);
     Ok(vec![CameraSpec { spec, keyframes }])
 }
 

@@ -7,8 +7,8 @@ use super::options::{Options, Settings};
 use super::parameters::ParameterList;
 use super::state::Matrices;
 use bilux_import::FormatError;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::names::unknown;
-use bilux_import::input::oddities::Oddities;
 use bilux_import::world::placement::{half_tangent, view_of};
 use bilux_math::glam::DQuat;
 use bilux_math::transcendental::{atan, atan2_f64};
@@ -33,9 +33,9 @@ pub(super) fn camera(
         "realistic" => ThinLens::read(list, loader, options.diagonal(), width / height)?,
         _ => None,
     };
-    let oddities = &mut loader.oddities;
-    let kind = kind(entity, system.as_ref(), oddities)?;
-    let window = ScreenWindow::read(list, width / height, oddities)?;
+    let diagnostics = &mut loader.diagnostics;
+    let kind = kind(entity, system.as_ref(), diagnostics)?;
+    let window = ScreenWindow::read(list, width / height, diagnostics)?;
     let to_world = matrices.map(|m| m.inverse());
     let sound = |m: &DMat4| m.is_finite() && bilux_math::Mat3::from_mat4(m.as_mat4()).is_finite();
     if !to_world.iter().all(sound) {
@@ -58,11 +58,11 @@ pub(super) fn camera(
     match system {
         Some(lens) => {
             let half = lens.half_height * sizes.y / sizes.z;
-            set_view(&mut spec, half, list.place("lensfile"), oddities);
+            set_view(&mut spec, half, list.place("lensfile"), diagnostics);
             set_blur(&mut spec, lens.radius, lens.focus, sizes);
         }
         None if kind == "panorama" => {}
-        None => set_lens(&mut spec, list, &window, sizes, oddities)?,
+        None => set_lens(&mut spec, list, &window, sizes, diagnostics)?,
     }
     let mut keyframes = Vec::new();
     if to_world[0] != to_world[1] {
@@ -73,7 +73,7 @@ pub(super) fn camera(
     for name in ["shutteropen", "shutterclose"] {
         list.has(name);
     }
-    list.report_unused(oddities);
+    list.report_unused(diagnostics);
     Ok(Some(CameraSpec { spec, keyframes }))
 }
 
@@ -81,7 +81,7 @@ pub(super) fn camera(
 fn kind(
     entity: &Entity,
     system: Option<&ThinLens>,
-    oddities: &mut Oddities,
+    diagnostics: &mut Diagnostics,
 ) -> Result<&'static str, FormatError> {
     let list = &entity.parameters;
     Ok(match entity.kind.as_str() {
@@ -97,7 +97,7 @@ fn kind(
                     "the camera 'realistic' has no lensfile: a perspective camera is used instead".to_owned()
                 }
             };
-            oddities.note(&what, || entity.at.clone());
+            diagnostics.note(&what, || entity.at.clone());
             for name in ["aperture", "simpleweighting", "aperturediameter", "focusdistance"] {
                 list.has(name);
             }
@@ -110,7 +110,7 @@ fn kind(
             if is_of_area {
                 let what =
                     "the mapping 'equalarea' is not supported: longitude and latitude are used instead";
-                oddities.note(what, || entity.at.clone());
+                diagnostics.note(what, || entity.at.clone());
             }
             "panorama"
         }
@@ -124,18 +124,18 @@ fn set_lens(
     list: &ParameterList,
     window: &ScreenWindow,
     sizes: DVec3,
-    oddities: &mut Oddities,
+    diagnostics: &mut Diagnostics,
 ) -> Result<(), FormatError> {
     let (radius, focus) = (list.finite("lensradius", 0.0)?, list.finite("focaldistance", 1e6)?);
     let fov = list.finite("fov", 90.0)?;
     if spec.kind == "orthographic" {
         if radius > 0.0 {
             let what = "an orthographic camera has no lens: everything is sharp";
-            oddities.note(what, || list.place("lensradius"));
+            diagnostics.note(what, || list.place("lensradius"));
         }
         if window.is_moved() {
             let what = "a shifted or stretched screen window of an orthographic camera is not supported: only its height is used";
-            oddities.note(what, || list.place("screenwindow"));
+            diagnostics.note(what, || list.place("screenwindow"));
         }
         let height = (2.0 * window.half.y * sizes.y).clamp(1e-9, 1e9);
         spec.parameters.set_at("height", (height as f32).into(), list.place("screenwindow"));
@@ -143,10 +143,10 @@ fn set_lens(
     }
     if list.has("halffov") {
         // A parameter of version 2, no longer in use.
-        oddities.note("'halffov' is not used: give 'fov'", || list.place("halffov"));
+        diagnostics.note("'halffov' is not used: give 'fov'", || list.place("halffov"));
     }
     let half = window.half.y * half_tangent(fov.clamp(0.0, 179.9)) * sizes.y / sizes.z;
-    set_view(spec, half, list.place("fov"), oddities);
+    set_view(spec, half, list.place("fov"), diagnostics);
     if window.is_moved() {
         let held = |x: f64| x.clamp(-100.0, 100.0) as f32;
         spec.parameters.set("principal_x", held(0.5 - 0.5 * window.middle.x / window.half.x));
@@ -160,10 +160,11 @@ fn set_lens(
 }
 
 /// Sets the field of view by half the height of the film at distance 1.
-fn set_view(spec: &mut Spec, half: f64, at: Span, oddities: &mut Oddities) {
+fn set_view(spec: &mut Spec, half: f64, at: Span, diagnostics: &mut Diagnostics) {
     let vertical = 2.0 * atan(half as f32).to_degrees();
     if !(0.01..=179.0).contains(&vertical) {
-        oddities.note("a field of view is out of range: it is limited to 0.01 to 179 degrees", || at.clone());
+        diagnostics
+            .note("a field of view is out of range: it is limited to 0.01 to 179 degrees", || at.clone());
     }
     spec.parameters.set_at("fov", vertical.clamp(0.01, 179.0).into(), at);
 }
@@ -189,7 +190,11 @@ impl ScreenWindow {
         self.middle.abs().cmpgt(self.half * 5e-5).any() || (self.stretch - 1.0).abs() > 1e-3
     }
 
-    fn read(list: &ParameterList, film: f64, oddities: &mut Oddities) -> Result<ScreenWindow, FormatError> {
+    fn read(
+        list: &ParameterList,
+        film: f64,
+        diagnostics: &mut Diagnostics,
+    ) -> Result<ScreenWindow, FormatError> {
         let frame = f64::from(list.finite("frameaspectratio", film as f32)?);
         let frame = if list.has("frameaspectratio") && frame > 0.0 { frame } else { film };
         let mut screen =
@@ -215,7 +220,7 @@ impl ScreenWindow {
         };
         if right < left || top < bottom {
             let what = "a screen window whose sides are exchanged is not supported: it is not mirrored";
-            oddities.note(what, || list.place("screenwindow"));
+            diagnostics.note(what, || list.place("screenwindow"));
         }
         Ok(window)
     }

@@ -310,7 +310,7 @@ impl Directive<'_, '_, '_, '_> {
         }
         let Parser { document, graphics, shapes, loader, .. } = &mut *self.parser;
         let made = shapes::shape(&entity, &graphics.state, shapes, loader)?;
-        entity.parameters.report_unused(&mut loader.oddities);
+        entity.parameters.report_unused(&mut loader.diagnostics);
         match &mut graphics.object {
             Some((_, pieces)) => pieces.extend(made),
             None => document.pieces.extend(made),

@@ -19,7 +19,7 @@ pub(super) fn finish(
     shapes: ShapeCache,
     mut loader: Loader,
 ) -> Result<SceneBuilder, FormatError> {
-    let settings = document.options.settings(&mut loader.oddities)?;
+    let settings = document.options.settings(&mut loader.diagnostics)?;
     let camera = camera(&document.options, &settings, &mut loader)?;
     let mut surfaces = Surfaces::new(document, settings.gain, loader);
     let mut lights = Vec::new();
@@ -52,11 +52,11 @@ pub(super) fn finish(
         notes: shapes.notes,
         ..SceneBuilder::default()
     };
-    let mut sink = Sink { scene, oddities: surfaces.maker.textures.loader.oddities };
+    let mut sink = Sink { scene, diagnostics: surfaces.maker.textures.loader.diagnostics };
     share_trees(&mut sink.scene);
     set_shutter(&mut sink.scene, settings.shutter);
     if sink.scene.objects.is_empty() && sink.scene.lights.is_empty() && document.has_world {
-        sink.oddities.note("there is nothing to render in this file", Span::default);
+        sink.diagnostics.note("there is nothing to render in this file", Span::default);
     }
     Ok(sink.finish())
 }

@@ -80,7 +80,7 @@ impl LightMaker<'_, '_, '_, '_> {
         }
         let power = list.number("power")?.filter(|power| *power > 0.0);
         let both_sides = list.flag("twosided", false)?;
-        list.report_unused(&mut self.textures.loader.oddities);
+        list.report_unused(&mut self.textures.loader.diagnostics);
         Ok(AreaEmission { radiance, both_sides, power })
     }
 }

@@ -45,7 +45,7 @@ pub(super) fn light(
         return Err(unknown("light", &entity.kind, names, &entity.at));
     };
     let made = make(maker, list, to_world)?;
-    list.report_unused(&mut maker.textures.loader.oddities);
+    list.report_unused(&mut maker.textures.loader.diagnostics);
     Ok(made.map(|spec| Spec { span: entity.at.clone(), ..spec }))
 }
 

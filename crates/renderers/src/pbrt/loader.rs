@@ -7,8 +7,8 @@ use bilux_import::FormatError;
 use bilux_import::appearance::spectra::colours::{ColourSpace, from_xyz};
 use bilux_import::appearance::spectra::metals;
 use bilux_import::appearance::spectra::{Spectrum, blackbody};
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::names::unknown;
-use bilux_import::input::oddities::Oddities;
 use bilux_import::input::reading::{self, Reading};
 use bilux_math::Rgb;
 use bilux_scene::{Span, Texture};
@@ -21,7 +21,7 @@ pub(super) struct Loader<'o, 'r> {
     pub(super) reading: &'r mut Reading<'o>,
     /// The folder of the first file, which all names are relative to.
     pub(super) folder: Option<PathBuf>,
-    pub(super) oddities: Oddities,
+    pub(super) diagnostics: Diagnostics,
     /// Spectra loaded from files.
     spectra: HashMap<PathBuf, Arc<Spectrum>>,
 }
@@ -39,12 +39,12 @@ pub(super) enum SpectrumType {
 
 impl<'o, 'r> Loader<'o, 'r> {
     pub(super) fn new(reading: &'r mut Reading<'o>, folder: Option<PathBuf>) -> Loader<'o, 'r> {
-        Loader { reading, folder, oddities: Oddities::default(), spectra: HashMap::new() }
+        Loader { reading, folder, diagnostics: Diagnostics::default(), spectra: HashMap::new() }
     }
 
     /// Counts something odd.
     pub(super) fn note(&mut self, what: &str, at: impl FnOnce() -> Span) {
-        self.oddities.note(what, at);
+        self.diagnostics.note(what, at);
     }
 
     /// The colour of a parameter, if it is given and not a texture.

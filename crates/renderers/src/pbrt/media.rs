@@ -62,7 +62,7 @@ pub(super) fn read(
         let factor = if kind == "nanovdb" { list.finite("Lescale", older)? } else { 1.0 };
         radiance = Rgb::grey(factor * temperature.brightest());
     }
-    list.report_unused(&mut loader.oddities);
+    list.report_unused(&mut loader.diagnostics);
     let (absorption, scattering) = (absorption * scale, scattering * scale);
     let emission = radiance;
     Ok(Medium { absorption, scattering, anisotropy, density, emission, emission_grid, temperature })

@@ -2,7 +2,7 @@
 
 use super::document::ObjectInstance;
 use super::state::Matrices;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_math::motion::{Motion, MotionKey};
 use bilux_math::{DMat4, Transform};
 use bilux_scene::Span;
@@ -16,21 +16,21 @@ pub(super) fn motion_within(
     own: &Matrices,
     times: [f64; 2],
     at: &Span,
-    oddities: &mut Oddities,
+    diagnostics: &mut Diagnostics,
 ) -> Option<Motion> {
-    let Some(used) = used else { return motion(own, times, at, oddities) };
+    let Some(used) = used else { return motion(own, times, at, diagnostics) };
     if own[0] == own[1] && used.matrices[0] == used.matrices[1] {
         let both = used.matrices[0] * own[0];
-        return motion(&[both, both], times, at, oddities);
+        return motion(&[both, both], times, at, diagnostics);
     }
-    let own = motion(own, times, at, oddities)?;
-    Some(own.then(&motion(&used.matrices, times, at, oddities)?))
+    let own = motion(own, times, at, diagnostics)?;
+    Some(own.then(&motion(&used.matrices, times, at, diagnostics)?))
 }
 
 /// Converts two matrices to a motion; `None`, with a warning, for a degenerate matrix.
-fn motion(matrices: &Matrices, times: [f64; 2], at: &Span, oddities: &mut Oddities) -> Option<Motion> {
+fn motion(matrices: &Matrices, times: [f64; 2], at: &Span, diagnostics: &mut Diagnostics) -> Option<Motion> {
     let Some(start) = Transform::from_matrix(matrices[0]) else {
-        oddities.note("objects with a scale of zero are not rendered", || at.clone());
+        diagnostics.note("objects with a scale of zero are not rendered", || at.clone());
         return None;
     };
     if matrices[0] == matrices[1] {
@@ -51,7 +51,7 @@ fn motion(matrices: &Matrices, times: [f64; 2], at: &Span, oddities: &mut Odditi
     if moving.is_none() {
         let what = "a motion that is not made of translations, rotations and scales is not supported: the start \
                     is shown";
-        oddities.note(what, || at.clone());
+        diagnostics.note(what, || at.clone());
     }
     Some(moving.unwrap_or(Motion::still(start)))
 }

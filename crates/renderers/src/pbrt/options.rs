@@ -3,8 +3,8 @@
 use super::entity::Entity;
 use super::state::Matrices;
 use bilux_import::FormatError;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::names::unknown;
-use bilux_import::input::oddities::Oddities;
 use bilux_scene::{Parameters, Span, Value};
 
 /// All options, the last of each kind.
@@ -55,7 +55,7 @@ impl Options {
     }
 
     /// The settings that all options except the camera make.
-    pub(super) fn settings(&self, oddities: &mut Oddities) -> Result<Settings, FormatError> {
+    pub(super) fn settings(&self, diagnostics: &mut Diagnostics) -> Result<Settings, FormatError> {
         let parameters = Parameters::default();
         let mut settings = Settings { parameters, shutter: [0.0, 1.0], gain: 1.0, size: [1280, 720] };
         if let Some((camera, _)) = &self.camera {
@@ -63,17 +63,17 @@ impl Options {
             settings.shutter = [list.finite("shutteropen", 0.0)?, list.finite("shutterclose", 1.0)?];
         }
         if let Some(film) = &self.film {
-            read_film(film, &mut settings, oddities)?;
+            read_film(film, &mut settings, diagnostics)?;
         }
         let [width, height] = settings.size;
         let at = settings.parameters.find("size").map(|(_, at)| at.clone()).unwrap_or_default();
         settings.set("size", Value::Text(format!("{width}x{height}")), &at);
-        read_filter(self.filter.as_ref(), &mut settings, oddities)?;
+        read_filter(self.filter.as_ref(), &mut settings, diagnostics)?;
         if let Some(sampler) = &self.sampler {
             read_sampler(sampler, &mut settings)?;
         }
         let (depth, at) = match &self.integrator {
-            Some(integrator) => depth(integrator, oddities)?,
+            Some(integrator) => depth(integrator, diagnostics)?,
             None => (5, Span::default()),
         };
         settings.set("max_depth", Value::Integer(i64::from(depth.clamp(0, 10_000))), &at);
@@ -88,7 +88,11 @@ impl Settings {
 }
 
 /// Reads the size of the film, and how much it scales light.
-fn read_film(film: &Entity, settings: &mut Settings, oddities: &mut Oddities) -> Result<(), FormatError> {
+fn read_film(
+    film: &Entity,
+    settings: &mut Settings,
+    diagnostics: &mut Diagnostics,
+) -> Result<(), FormatError> {
     let list = &film.parameters;
     let known = ["rgb", "gbuffer", "spectral", "image"];
     if !known.contains(&film.kind.as_str()) {
@@ -109,34 +113,34 @@ fn read_film(film: &Entity, settings: &mut Settings, oddities: &mut Oddities) ->
             settings.gain = gain;
         } else {
             let what = "an exposure of zero would make the picture black: an exposure of one second is used";
-            oddities.note(what, || film.at.clone());
+            diagnostics.note(what, || film.at.clone());
         }
     }
     if film.kind == "spectral" {
-        oddities.note("spectral films are not supported: pictures are RGB", || film.at.clone());
+        diagnostics.note("spectral films are not supported: pictures are RGB", || film.at.clone());
     }
     let sensor = list.text("sensor")?.unwrap_or("cie1931");
     if sensor != "cie1931" || list.finite("whitebalance", 0.0)? != 0.0 {
         list.has("whitebalance");
         let what = "sensors and white balance are not supported: colours are those of the standard observer";
-        oddities.note(what, || list.place("sensor"));
+        diagnostics.note(what, || list.place("sensor"));
     }
     for name in ["cropwindow", "pixelbounds"] {
         if list.has(name) {
             let what = "the whole film is rendered, not only a part of it; use --crop";
-            oddities.note(what, || list.place(name));
+            diagnostics.note(what, || list.place(name));
         }
     }
     for name in ["maxcomponentvalue", "maxsampleluminance"] {
         if list.has(name) {
-            oddities.note("bright samples are not clamped", || list.place(name));
+            diagnostics.note("bright samples are not clamped", || list.place(name));
         }
     }
     for name in ["filename", "diagonal", "savefp16", "coordinatesystem", "nbuckets", "lambdamin", "lambdamax"]
     {
         list.has(name);
     }
-    list.report_unused(oddities);
+    list.report_unused(diagnostics);
     Ok(())
 }
 
@@ -144,7 +148,7 @@ fn read_film(film: &Entity, settings: &mut Settings, oddities: &mut Oddities) ->
 fn read_filter(
     filter: Option<&Entity>,
     settings: &mut Settings,
-    oddities: &mut Oddities,
+    diagnostics: &mut Diagnostics,
 ) -> Result<(), FormatError> {
     let Some(filter) = filter else {
         settings.set("filter", "gaussian".into(), &Span::default());
@@ -177,9 +181,9 @@ fn read_filter(
     }
     if !is_same {
         let what = format!("the pixel filter is '{ours}' with radius {radius} instead of this one");
-        oddities.note(&what, || filter.at.clone());
+        diagnostics.note(&what, || filter.at.clone());
     }
-    list.report_unused(oddities);
+    list.report_unused(diagnostics);
     settings.set("filter", (*ours).into(), &filter.at);
     Ok(())
 }
@@ -206,15 +210,15 @@ fn read_sampler(sampler: &Entity, settings: &mut Settings) -> Result<(), FormatE
 }
 
 /// The maximum path depth and its location. The choice of the integrator is left to the renderer.
-fn depth(integrator: &Entity, oddities: &mut Oddities) -> Result<(i32, Span), FormatError> {
+fn depth(integrator: &Entity, diagnostics: &mut Diagnostics) -> Result<(i32, Span), FormatError> {
     let list = &integrator.parameters;
     if ["ao", "ambientocclusion", "function"].contains(&integrator.kind.as_str()) {
         let what =
             format!("the integrator '{}' is not supported: the default integrator is used", integrator.kind);
-        oddities.note(&what, || integrator.at.clone());
+        diagnostics.note(&what, || integrator.at.clone());
     }
     if list.flag("regularize", false)? {
-        oddities.note("regularisation is not supported", || list.place("regularize"));
+        diagnostics.note("regularisation is not supported", || list.place("regularize"));
     }
     Ok((list.integer("maxdepth")?.unwrap_or(5), list.place("maxdepth")))
 }

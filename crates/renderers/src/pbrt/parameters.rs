@@ -4,8 +4,8 @@ use super::lexer::{Lexer, Token, number_of, shown};
 use bilux_import::FormatError;
 use bilux_import::appearance::spectra::colours::ColourSpace;
 use bilux_import::bytes::budget::Budget;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::names::{shortened, unknown};
-use bilux_import::input::oddities::Oddities;
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::Span;
 use bilux_scene::error::nearest_name;
@@ -387,13 +387,13 @@ impl ParameterList {
     }
 
     /// Warns about parameters that nothing looked up.
-    pub(super) fn report_unused(&self, oddities: &mut Oddities) {
+    pub(super) fn report_unused(&self, diagnostics: &mut Diagnostics) {
         for parameter in self.list.iter().filter(|p| !p.used.get()) {
             let known: Vec<String> = self.asked.borrow().iter().map(|name| (*name).to_owned()).collect();
             let meant = nearest_name(&shortened(&parameter.name), &known);
             let meant = meant.map_or_else(String::new, |name| format!("; did you mean '{name}'?"));
             let what = format!("'{}' of {} is not used{meant}", shortened(&parameter.name), self.what);
-            oddities.note(&what, || parameter.at.clone());
+            diagnostics.note(&what, || parameter.at.clone());
         }
     }
 }

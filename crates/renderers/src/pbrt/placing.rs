@@ -66,7 +66,7 @@ impl<'d, 'o, 'r> Placer<'d, 'o, 'r> {
             return Ok(());
         };
         let loader = self.surfaces.maker.loader();
-        let motion = motion_within(used, &matrices, self.times, at, &mut loader.oddities);
+        let motion = motion_within(used, &matrices, self.times, at, &mut loader.diagnostics);
         let Some(motion) = motion else { return Ok(()) };
         let mesh = if is_light {
             let both = self.fronted.entry(Arc::as_ptr(&mesh));

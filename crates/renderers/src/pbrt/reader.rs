@@ -37,7 +37,7 @@ fn read_whole(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, Fo
     }
     if !document.has_world {
         let what = "it has no WorldBegin, so there is nothing to render: add WorldBegin before the shapes";
-        loader.oddities.note(what, || whole_file(source.name));
+        loader.diagnostics.note(what, || whole_file(source.name));
     }
     finish(&document, shapes, loader)
 }

@@ -128,7 +128,7 @@ impl<'d, 'o, 'r> Surfaces<'d, 'o, 'r> {
         };
         if !medium.is_clear() {
             let loader = self.maker.loader();
-            fill(&mut spec, &medium, to_world, &piece.at, (loader.reading, &mut loader.oddities))?;
+            fill(&mut spec, &medium, to_world, &piece.at, (loader.reading, &mut loader.diagnostics))?;
         }
         if let Some(glow) = glow.filter(|_| spec.kind != "interface") {
             spec = self.glowing(spec, glow, piece);

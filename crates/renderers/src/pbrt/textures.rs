@@ -140,7 +140,7 @@ impl<'d, 'o, 'r> Textures<'d, 'o, 'r> {
         let list = &entity.parameters;
         if let Some((_, make)) = TEXTURES.iter().find(|(name, _)| *name == entity.kind) {
             let source = make(self, list, meaning)?;
-            list.report_unused(&mut self.loader.oddities);
+            list.report_unused(&mut self.loader.diagnostics);
             return Ok(source);
         }
         let Some((_, plain)) = PLAIN.iter().find(|(name, _)| *name == entity.kind) else {

@@ -29,8 +29,8 @@ impl Composer<'_, '_> {
                     if primitive.kind.is_surface() {
                         surfaces::add(&mut self.world, primitive, place)?;
                     } else {
-                        let World { modifiers, reading, oddities, .. } = &mut self.world;
-                        modifiers.define(primitive, place, &mut reading.budget, oddities)?;
+                        let World { modifiers, reading, diagnostics, .. } = &mut self.world;
+                        modifiers.define(primitive, place, &mut reading.budget, diagnostics)?;
                     }
                 }
                 Statement::Command(command) => {
@@ -119,11 +119,11 @@ impl Composer<'_, '_> {
         words: &[Rc<str>],
         at: &Span,
     ) -> Result<Option<Vec<Statement>>, FormatError> {
-        let oddities = &mut self.world.oddities;
+        let diagnostics = &mut self.world.diagnostics;
         match program {
-            "genbox" => genbox::generate(words, at, oddities),
+            "genbox" => genbox::generate(words, at, diagnostics),
             "gensky" => sky::gensky(words, at).map(Some),
-            "gendaylit" => sky::gendaylit(words, at, oddities).map(Some),
+            "gendaylit" => sky::gendaylit(words, at, diagnostics).map(Some),
             _ => Ok(None),
         }
     }
@@ -156,7 +156,7 @@ impl Composer<'_, '_> {
             "programs are not run, and what '!{}' writes is left out: write it to a file, and name that with '!xform FILE'",
             command.first_word()
         );
-        self.world.oddities.note(&what, || command.at.clone());
+        self.world.diagnostics.note(&what, || command.at.clone());
         Ok(())
     }
 }

@@ -21,10 +21,10 @@ pub(super) fn finish(
     }
     sources::finish(&mut world)?;
     if world.objects.is_empty() && world.lights.is_empty() {
-        world.oddities.note("there is nothing to render in this file", || whole_file(file));
+        world.diagnostics.note("there is nothing to render in this file", || whole_file(file));
     }
     let has_light = world.has_glow || !world.lights.is_empty();
-    let World { objects, lights, materials, textures, oddities, .. } = world;
+    let World { objects, lights, materials, textures, diagnostics, .. } = world;
     let scene = SceneBuilder {
         // Files of furniture and the like have no light of their own.
         describes_all_light: has_light,
@@ -38,7 +38,7 @@ pub(super) fn finish(
         textures,
         ..SceneBuilder::default()
     };
-    let mut sink = Sink { scene, oddities };
+    let mut sink = Sink { scene, diagnostics };
     share_trees(&mut sink.scene);
     Ok(sink.finish())
 }

@@ -4,7 +4,7 @@ use super::kinds::Kind;
 use super::statement::{Primitive, Statement};
 use bilux_import::FormatError;
 use bilux_import::bytes::float::parse_f64;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_math::DVec3;
 use bilux_scene::Span;
 use std::rc::Rc;
@@ -32,7 +32,7 @@ struct Cuboid<'a> {
 pub(super) fn generate(
     words: &[Rc<str>],
     at: &Span,
-    oddities: &mut Oddities,
+    diagnostics: &mut Diagnostics,
 ) -> Result<Option<Vec<Statement>>, FormatError> {
     let [material, name, sizes @ ..] = words else { return usage(at) };
     let Some((sizes, options)) = sizes.split_first_chunk::<3>() else { return usage(at) };
@@ -55,7 +55,7 @@ pub(super) fn generate(
         }
     }
     if made.inverts && matches!(made.edges, Edges::Round(_)) {
-        oddities.note("the round edges of a box that is turned inside out are sharp here", || at.clone());
+        diagnostics.note("the round edges of a box that is turned inside out are sharp here", || at.clone());
         made.edges = Edges::Sharp;
     }
     Ok(Some(made.statements()))
@@ -181,7 +181,7 @@ mod tests {
 
     fn polygons(text: &str) -> Vec<Vec<DVec3>> {
         let words: Vec<Rc<str>> = text.split_whitespace().map(Rc::from).collect();
-        let made = generate(&words, &Span::default(), &mut Oddities::default()).unwrap().unwrap();
+        let made = generate(&words, &Span::default(), &mut Diagnostics::default()).unwrap().unwrap();
         let of = |statement: Statement| match statement {
             Statement::Primitive(primitive) if primitive.kind == Kind::Polygon => {
                 Some(primitive.reals.chunks(3).map(DVec3::from_slice).collect())

@@ -30,9 +30,9 @@ pub(super) fn spot(
     middle: DVec3,
 ) -> Result<(), FormatError> {
     let what = "a spotlight is a point in the middle of its surface, which is not seen, with a sharp edge to its cone";
-    world.oddities.remark(what, || lamp.at.clone());
+    world.diagnostics.remark(what, || lamp.at.clone());
     let Some(aim) = turned(aim).try_normalize() else {
-        world.oddities.note("a spotlight without a direction is left out", || lamp.at.clone());
+        world.diagnostics.note("a spotlight without a direction is left out", || lamp.at.clone());
         return Ok(());
     };
     let position = world.point(middle);

@@ -70,7 +70,7 @@ fn made(world: &mut World, first: usize, at: &Span, depth: usize) -> Result<Look
             }
             (Kind::Pattern, None) => {
                 let what = format!("the {} '{}'", primitive.word, primitive.name);
-                world.oddities.not_shown(&what, || primitive.at.clone());
+                world.diagnostics.not_shown(&what, || primitive.at.clone());
             }
             _ if base.is_none() => base = Some(index),
             // Only the first material counts.
@@ -94,7 +94,7 @@ fn finished(
     let (matrix, scale) = (modifier.matrix, modifier.scale);
     let Kind::Material(finish) = primitive.kind else {
         let what = format!("the mixture of the {} '{}', which is even", primitive.word, primitive.name);
-        world.oddities.not_shown(&what, || primitive.at.clone());
+        world.diagnostics.not_shown(&what, || primitive.at.clone());
         let [a, b] = [0, 1].map(|i| parts.get(i).copied().unwrap_or(Reference::Void));
         let (a, b) = (resolved(world, a, at, depth + 1)?, resolved(world, b, at, depth + 1)?);
         return mixed(world, &primitive.name, a, b, &primitive.at);
@@ -116,7 +116,7 @@ fn finished(
         let (name, colour, at) = (primitive.name.clone(), primitive.colour(), primitive.at.clone());
         if finish == Finish::Glow && primitive.reals[3] < 0.0 {
             let what = "a glow of negative radius lights its surroundings here";
-            world.oddities.note(what, || at.clone());
+            world.diagnostics.note(what, || at.clone());
         }
         return Ok(Look::Lamp(Rc::new(Lamp { index, name, colour, emission, sky, at })));
     }

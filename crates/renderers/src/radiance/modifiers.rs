@@ -5,7 +5,7 @@ use super::place::Place;
 use super::statement::Primitive;
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_math::DMat4;
 use bilux_scene::error::nearest_name;
 use std::collections::HashMap;
@@ -60,7 +60,7 @@ const LISTED: usize = 20;
 
 impl Modifiers {
     /// Meaning of a name now. Says once where there is nothing of this name.
-    pub(super) fn named(&mut self, name: &str, of: &Primitive, oddities: &mut Oddities) -> Reference {
+    pub(super) fn named(&mut self, name: &str, of: &Primitive, diagnostics: &mut Diagnostics) -> Reference {
         if name == "void" {
             return Reference::Void;
         }
@@ -68,7 +68,8 @@ impl Modifiers {
             return Reference::To(*index);
         }
         if !self.unknown.contains_key(name) && self.unknown.len() >= LISTED {
-            oddities.note("nothing defines the modifiers of more surfaces: these are grey", || of.at.clone());
+            diagnostics
+                .note("nothing defines the modifiers of more surfaces: these are grey", || of.at.clone());
             return Reference::Unknown;
         }
         let what = self.unknown.entry(name.into()).or_insert_with(|| {
@@ -87,7 +88,7 @@ impl Modifiers {
                 ),
             }
         });
-        oddities.note(what, || of.at.clone());
+        diagnostics.note(what, || of.at.clone());
         Reference::Unknown
     }
 
@@ -97,13 +98,13 @@ impl Modifiers {
         primitive: &Rc<Primitive>,
         place: &Place,
         budget: &mut Budget,
-        oddities: &mut Oddities,
+        diagnostics: &mut Diagnostics,
     ) -> Result<(), FormatError> {
         let index = match primitive.kind {
-            Kind::Alias => self.alias(primitive, budget, oddities)?,
+            Kind::Alias => self.alias(primitive, budget, diagnostics)?,
             _ => {
-                let under = self.named(&primitive.modifier, primitive, oddities);
-                let parts = self.parts(primitive, oddities);
+                let under = self.named(&primitive.modifier, primitive, diagnostics);
+                let parts = self.parts(primitive, diagnostics);
                 let is_placed = primitive.kind.depends_on_place() || primitive.sky.is_some();
                 let matrix = if is_placed { place.matrix } else { DMat4::IDENTITY };
                 Some(self.interned(primitive, under, parts, matrix, budget)?)
@@ -120,29 +121,29 @@ impl Modifiers {
         &mut self,
         alias: &Rc<Primitive>,
         budget: &mut Budget,
-        oddities: &mut Oddities,
+        diagnostics: &mut Diagnostics,
     ) -> Result<Option<usize>, FormatError> {
         let of = alias.strings.first().map_or("void", |name| name);
-        let Reference::To(old) = self.named(of, alias, oddities) else { return Ok(None) };
+        let Reference::To(old) = self.named(of, alias, diagnostics) else { return Ok(None) };
         // This word keeps the modifier that there is.
         if &*alias.modifier == "inherit" {
             return Ok(Some(old));
         }
-        let under = self.named(&alias.modifier, alias, oddities);
+        let under = self.named(&alias.modifier, alias, diagnostics);
         let Modifier { primitive, parts, matrix, .. } = &self.list[old];
         let (primitive, parts, matrix) = (primitive.clone(), parts.clone(), *matrix);
         self.interned(&primitive, under, parts, matrix, budget).map(Some)
     }
 
     /// References that the words of a mixture, an illum or a mirror name.
-    fn parts(&mut self, primitive: &Primitive, oddities: &mut Oddities) -> Vec<Reference> {
+    fn parts(&mut self, primitive: &Primitive, diagnostics: &mut Diagnostics) -> Vec<Reference> {
         use super::kinds::Finish::{Illum, Mirror};
         let count = match primitive.kind {
             Kind::Mixture => 2,
             Kind::Material(Illum | Mirror) => 1,
             _ => 0,
         };
-        primitive.strings.iter().take(count).map(|name| self.named(name, primitive, oddities)).collect()
+        primitive.strings.iter().take(count).map(|name| self.named(name, primitive, diagnostics)).collect()
     }
 
     fn interned(

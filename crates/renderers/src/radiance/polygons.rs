@@ -3,7 +3,7 @@
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 use bilux_import::geometry::polygon::Triangulator;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_math::{DVec3, Vec3};
 use bilux_scene::{Mesh, Object, Span, Spec, Visibility};
 use std::collections::HashMap;
@@ -48,7 +48,7 @@ impl Polygons {
         corners: &[DVec3],
         at: &Span,
         budget: &mut Budget,
-        oddities: &mut Oddities,
+        diagnostics: &mut Diagnostics,
     ) -> Result<(), FormatError> {
         let count = corners.len() as u64;
         budget.take_bytes(count * (VERTEX + size_of::<[[u32; 3]; 2]>() as u64), &at.file)?;
@@ -77,7 +77,7 @@ impl Polygons {
         });
         if whole.is_none() {
             let what = "a concave polygon has too many corners: it is drawn as if it were convex";
-            oddities.note(what, || at.clone());
+            diagnostics.note(what, || at.clone());
         }
         Ok(())
     }

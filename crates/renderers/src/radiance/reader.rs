@@ -137,7 +137,7 @@ impl Composer<'_, '_> {
         let found = text.as_deref().and_then(views::last_of);
         if found.is_none() {
             let what = format!("the view file '{file}' cannot be read, or has no view");
-            self.world.oddities.note(&what, || at.clone());
+            self.world.diagnostics.note(&what, || at.clone());
         }
         found.map(|(_, line)| line.split_whitespace().map(str::to_owned).collect())
     }

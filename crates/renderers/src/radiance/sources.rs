@@ -33,15 +33,15 @@ pub(super) fn add(
     at: &Span,
 ) -> Result<(), FormatError> {
     let Some(direction) = direction.try_normalize().filter(|_| degrees > 0.0) else {
-        world.oddities.note("a source without a direction or a size is left out", || at.clone());
+        world.diagnostics.note("a source without a direction or a size is left out", || at.clone());
         return Ok(());
     };
     if let Emission::Spot { .. } = lamp.emission {
-        world.oddities.note("a source that is a spotlight shines everywhere", || at.clone());
+        world.diagnostics.note("a source that is a spotlight shines everywhere", || at.clone());
     }
     if lamp.sky.is_some() && place.matrix.transform_vector3(DVec3::Z).normalize_or_zero().z < 0.999 {
         let what = "skies are turned about the vertical only";
-        world.oddities.note(what, || at.clone());
+        world.diagnostics.note(what, || at.clone());
     }
     world.reading.budget.take::<DistantSource>(1, &at.file)?;
     let (name, colour, sky) = (lamp.name.clone(), lamp.colour, lamp.sky.clone());
@@ -95,7 +95,7 @@ fn sorted(sources: Vec<DistantSource>, world: &mut World) -> Sorted {
         let is_half = (170.0..=190.0).contains(&source.degrees) && source.direction.z.abs() > 0.999;
         if !is_whole && !is_half && source.sky.is_some() {
             let what = "a part of a sky that is no half of it is taken as one";
-            world.oddities.note(what, || source.at.clone());
+            world.diagnostics.note(what, || source.at.clone());
         } else if !is_whole && !is_half {
             sorted.others.push(source);
             continue;
@@ -109,7 +109,7 @@ fn sorted(sources: Vec<DistantSource>, world: &mut World) -> Sorted {
             }
         }
         if !is_used && source.sky.is_some() {
-            world.oddities.note("a second sky is left out", || source.at.clone());
+            world.diagnostics.note("a second sky is left out", || source.at.clone());
         } else if !is_used {
             sorted.others.push(source);
         }

@@ -30,15 +30,15 @@ pub(super) fn add(world: &mut World, primitive: &Primitive, place: &Place) -> Re
     if primitive.kind == Kind::Foreign {
         let file = primitive.strings.first().map_or("", |file| file);
         let what = format!("the {} '{file}': files of that kind are not read", primitive.word);
-        world.oddities.not_shown(&what, || at.clone());
+        world.diagnostics.not_shown(&what, || at.clone());
         return Ok(());
     }
     let name = place.modifier.as_deref().unwrap_or(&primitive.modifier);
-    let reference = world.modifiers.named(name, primitive, &mut world.oddities);
+    let reference = world.modifiers.named(name, primitive, &mut world.diagnostics);
     let look = look(world, reference, at)?;
     if primitive.kind == Kind::Source {
         let Look::Lamp(lamp) = look else {
-            world.oddities.note("a source that emits no light is left out", || at.clone());
+            world.diagnostics.note("a source that emits no light is left out", || at.clone());
             return Ok(());
         };
         let direction = place.matrix.transform_vector3(DVec3::from_slice(&primitive.reals[..3]));
@@ -47,7 +47,7 @@ pub(super) fn add(world: &mut World, primitive: &Primitive, place: &Place) -> Re
     let Some(shape) = shape(world, primitive, place) else { return Ok(()) };
     match look {
         Look::Nothing => {
-            world.oddities.remark("surfaces without a material are not there", || at.clone());
+            world.diagnostics.remark("surfaces without a material are not there", || at.clone());
             Ok(())
         }
         Look::Material(material) => draw(world, &shape, material, false, primitive, place),
@@ -102,7 +102,7 @@ fn shape(world: &mut World, primitive: &Primitive, place: &Place) -> Option<Shap
     if shape.is_none() {
         let what =
             format!("a {} of radius or length 0, or with radii that do not fit, is left out", primitive.word);
-        world.oddities.note(&what, || primitive.at.clone());
+        world.diagnostics.note(&what, || primitive.at.clone());
     }
     shape
 }
@@ -134,8 +134,8 @@ fn draw(
         Shape::Polygon(ref corners) => {
             let key = polygons::Key { material, prefix: place.prefix.clone(), is_hidden };
             let corners: Vec<DVec3> = corners.iter().map(|corner| world.point(*corner)).collect();
-            let World { polygons, reading, oddities, .. } = world;
-            polygons.add(key, &corners, at, &mut reading.budget, oddities)
+            let World { polygons, reading, diagnostics, .. } = world;
+            polygons.add(key, &corners, at, &mut reading.budget, diagnostics)
         }
         Shape::Round { form, inwards, origin, along, radius } => {
             let matrix = match form {
@@ -146,7 +146,7 @@ fn draw(
             };
             let Some(transform) = Transform::from_matrix(matrix) else {
                 let what = "a surface is too large or too small for 32-bit numbers: left out";
-                world.oddities.note(what, || at.clone());
+                world.diagnostics.note(what, || at.clone());
                 return Ok(());
             };
             let mesh = world.round.mesh(form, inwards, &mut world.reading.budget, &at.file)?;
@@ -172,7 +172,7 @@ fn shine(
     let at = &primitive.at;
     if lamp.sky.is_some() {
         let what = format!("the sky on the surfaces of '{}', which shine evenly", lamp.name);
-        world.oddities.not_shown(&what, || lamp.at.clone());
+        world.diagnostics.not_shown(&what, || lamp.at.clone());
     }
     world.has_glow = true;
     match &lamp.emission {
@@ -197,7 +197,7 @@ fn shine(
         Emission::Illum(alternate) => {
             let what =
                 "eyes look through the light of an 'illum', and what is behind it lights nothing through it";
-            world.oddities.remark(what, || lamp.at.clone());
+            world.diagnostics.remark(what, || lamp.at.clone());
             let material = lights::material(world, lamp)?;
             draw(world, shape, material, true, primitive, place)?;
             match **alternate {

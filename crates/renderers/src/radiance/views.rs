@@ -56,7 +56,7 @@ pub(super) fn camera(words: &[&str], name: &str, at: &Span, world: &mut World) -
         Some(spec) => Some(CameraSpec::new(Spec { name: name.to_owned(), span: at.clone(), ..spec })),
         None => {
             let what = "a view has numbers that are missing, wrong or out of range: left out";
-            world.oddities.note(what, || at.clone());
+            world.diagnostics.note(what, || at.clone());
             None
         }
     }
@@ -79,7 +79,7 @@ fn view(words: &[&str], at: &Span, world: &mut World) -> Option<View> {
             "-vs" => view.shift[0] = number()?,
             "-vl" => view.shift[1] = number()?,
             "-vo" | "-va" if number()? != 0.0 => {
-                world.oddities.remark("planes that clip a view are not used", || at.clone());
+                world.diagnostics.remark("planes that clip a view are not used", || at.clone());
             }
             word => {
                 view.form = word.strip_prefix("-vt").and_then(|form| form.chars().next()).unwrap_or(view.form)
@@ -122,10 +122,10 @@ impl View {
             placed("fisheye").with("mapping", mapping).with("fov", width.clamp(1.0, most) as f32)
         };
         if matches!(self.form, 'h' | 'a' | 's') && width != height {
-            world.oddities.note("a fisheye view is as high as wide", || at.clone());
+            world.diagnostics.note("a fisheye view is as high as wide", || at.clone());
         }
         if self.form != 'v' && self.shift != [0.0; 2] {
-            world.oddities.note("only perspective views are shifted", || at.clone());
+            world.diagnostics.note("only perspective views are shifted", || at.clone());
         }
         Some(match self.form {
             'l' => placed("orthographic").with("height", height.clamp(1e-9, 1e9) as f32),

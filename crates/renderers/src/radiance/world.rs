@@ -6,7 +6,7 @@ use super::modifiers::Modifiers;
 use super::polygons::Polygons;
 use super::round::RoundShapes;
 use bilux_import::FormatError;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::Reading;
 use bilux_math::{DVec3, Vec3};
 use bilux_scene::{Object, Span, Spec, Texture};
@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// The parts of a scene, and what making them needs.
 pub(super) struct World<'o, 'r> {
     pub(super) reading: &'r mut Reading<'o>,
-    pub(super) oddities: Oddities,
+    pub(super) diagnostics: Diagnostics,
     pub(super) modifiers: Modifiers,
     pub(super) looks: Looks,
     pub(super) materials: Vec<Spec>,
@@ -33,7 +33,7 @@ impl<'o, 'r> World<'o, 'r> {
     pub(super) fn new(reading: &'r mut Reading<'o>) -> World<'o, 'r> {
         World {
             reading,
-            oddities: Oddities::default(),
+            diagnostics: Diagnostics::default(),
             modifiers: Modifiers::default(),
             looks: Looks::default(),
             materials: Vec::new(),

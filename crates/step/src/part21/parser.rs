@@ -5,7 +5,7 @@ use super::table::{Instance, Record, Table, place};
 use super::value::{Piece, Value};
 use bilux_import::FormatError;
 use bilux_import::bytes::text::whole_file;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::Reading;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -38,7 +38,7 @@ pub(crate) fn parse<'a>(
         instances: HashMap::new(),
         order: Vec::new(),
         is_whole: false,
-        faults: Oddities::default(),
+        faults: Diagnostics::default(),
     };
     let mut parser = Parser {
         reading,

@@ -1,7 +1,7 @@
 //! The instances of a file by their numbers.
 
 use super::value::{Piece, Value, Values};
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_scene::Span;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -36,7 +36,7 @@ pub(crate) struct Table<'a> {
     /// True if the file has its end.
     pub(crate) is_whole: bool,
     /// Faults that were found while the file was read.
-    pub(super) faults: Oddities,
+    pub(super) faults: Diagnostics,
 }
 
 impl<'a> Table<'a> {
@@ -107,7 +107,7 @@ impl<'a> Table<'a> {
         self.file.clone()
     }
 
-    pub(crate) fn take_faults(&mut self) -> Oddities {
+    pub(crate) fn take_faults(&mut self) -> Diagnostics {
         std::mem::take(&mut self.faults)
     }
 }

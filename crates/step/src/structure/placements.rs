@@ -6,7 +6,7 @@ use super::styles::{Style, Styles};
 use super::units::{USUAL, Units};
 use crate::part21::Table;
 use bilux_import::FormatError;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::Reading;
 use bilux_math::{DMat4, DVec3};
 use std::collections::HashSet;
@@ -67,11 +67,12 @@ pub(crate) fn placed(
     reading: &mut Reading,
     table: &Table,
     styles: &Styles,
-    oddities: &mut Oddities,
+    diagnostics: &mut Diagnostics,
 ) -> Result<(Vec<Placed>, f64), FormatError> {
     let products = Products::of_file(table);
     let unit = products.unit;
-    let mut walk = Walk { reading, table, products, styles, oddities, found: Vec::new(), open: Vec::new() };
+    let mut walk =
+        Walk { reading, table, products, styles, diagnostics, found: Vec::new(), open: Vec::new() };
     for root in walk.products.roots().to_vec() {
         walk.product(root, DMat4::IDENTITY, None)?;
     }
@@ -86,7 +87,7 @@ struct Walk<'a, 't, 'b, 'o> {
     table: &'t Table<'b>,
     products: Products<'t, 'b>,
     styles: &'a Styles,
-    oddities: &'a mut Oddities,
+    diagnostics: &'a mut Diagnostics,
     found: Vec<Placed>,
     /// The products and representations that the walk is within.
     open: Vec<u64>,
@@ -117,7 +118,7 @@ impl Walk<'_, '_, '_, '_> {
             } else {
                 "assemblies are nested more than 64 levels deep, and the rest is left out"
             };
-            self.oddities.note(what, || self.table.span(id));
+            self.diagnostics.note(what, || self.table.span(id));
             return Ok(false);
         }
         self.open.push(id);
@@ -200,7 +201,7 @@ impl Walk<'_, '_, '_, '_> {
 
     fn item(&mut self, item: u64, representation: u64, around: &Around) -> Result<(), FormatError> {
         if self.styles.hides(item) {
-            self.oddities.not_used("hidden shapes", || self.table.span(item));
+            self.diagnostics.not_used("hidden shapes", || self.table.span(item));
             return Ok(());
         }
         if self.table.is(item, "MAPPED_ITEM") {
@@ -220,9 +221,9 @@ impl Walk<'_, '_, '_, '_> {
             .iter()
             .any(|word| kind.contains(word));
         if is_drawing {
-            self.oddities.not_used("curves, points and annotations", || self.table.span(item));
+            self.diagnostics.not_used("curves, points and annotations", || self.table.span(item));
         } else {
-            self.oddities.not_shown(&format!("shapes of the kind {kind}"), || self.table.span(item));
+            self.diagnostics.not_shown(&format!("shapes of the kind {kind}"), || self.table.span(item));
         }
         Ok(())
     }
@@ -247,7 +248,7 @@ impl Walk<'_, '_, '_, '_> {
             Some((mapped, place))
         };
         let Some((mapped, place)) = read() else {
-            self.oddities.note("a mapped item has no place, and is left out", || self.table.span(item));
+            self.diagnostics.note("a mapped item has no place, and is left out", || self.table.span(item));
             return Ok(());
         };
         // What the assembly places by its own means is not placed once more.

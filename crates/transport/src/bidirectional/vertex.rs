@@ -10,7 +10,7 @@ use crate::photons::{MediumPhoton, Photon, PhotonWalk};
 use crate::sampling::task::Context;
 use crate::techniques::PerSet;
 use crate::techniques::mis::Partial;
-use crate::techniques::way::Way;
+use crate::techniques::optical_path::OpticalPath;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::Scene;
 
@@ -91,13 +91,13 @@ impl<const N: usize> Vertex<N> {
     }
 
     /// Start of its light subpath, if this is its first vertex.
-    pub(super) fn start(&self, scene: &Scene) -> Way {
+    pub(super) fn start(&self, scene: &Scene) -> OpticalPath {
         let p = self.at.p();
         let is_infinite = |light: usize| scene.lights()[light].light.is_infinite();
         if self.straight_from.is_some_and(is_infinite) {
-            return Way::from_infinity(p);
+            return OpticalPath::from_infinity(p);
         }
-        Way::from(p + self.wo * self.at.t())
+        OpticalPath::from(p + self.wo * self.at.t())
     }
 
     /// The photon that is stored for merging on a surface; `None` in a medium.

@@ -4,7 +4,7 @@
 //! a medium, without. [Pauly 2000]
 
 use crate::media::ball::Ball;
-use crate::techniques::way::Place;
+use crate::techniques::optical_path::PathPoint;
 use crate::techniques::{DirectLight, PerSet, TechniqueCounts};
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{Bsdf, BsdfSample, LightSample, Phase, Ray, Surface, TransportMode};
@@ -160,12 +160,12 @@ impl Interaction {
     }
 
     /// Place of the vertex, for the lengths of paths that come along `wo`.
-    pub(crate) fn place(&self, wo: Vec3) -> Place {
+    pub(crate) fn place(&self, wo: Vec3) -> PathPoint {
         match self {
             Interaction::Surface(surface, bsdf) => {
-                Place { p: surface.p, wo, n: surface.n_geom, eta: bsdf.relative_index() }
+                PathPoint { p: surface.p, wo, n: surface.n_geom, eta: bsdf.relative_index() }
             }
-            Interaction::Medium(point) => Place { p: point.p, wo, n: Vec3::ZERO, eta: 1.0 },
+            Interaction::Medium(point) => PathPoint { p: point.p, wo, n: Vec3::ZERO, eta: 1.0 },
         }
     }
 

@@ -13,6 +13,7 @@
 pub(crate) mod ball;
 mod balls;
 mod between;
+pub(crate) mod camera_segment;
 mod coincident;
 mod enclosed;
 pub(crate) mod equiangular;
@@ -20,7 +21,6 @@ mod fog;
 pub(crate) mod interaction;
 mod nested;
 mod passage;
-pub(crate) mod sight;
 mod start;
 
 use crate::media::interaction::Interaction;

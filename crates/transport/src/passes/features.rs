@@ -19,7 +19,7 @@ use crate::film::zeroed;
 use crate::integrators::pixel_integrator::PixelIntegrator;
 use crate::labels::visible_normal;
 use crate::media::Media;
-use crate::media::sight::Sight;
+use crate::media::camera_segment::CameraSegment;
 use crate::sampling::camera_rays::CameraRays;
 use crate::schedule::progress::Progress;
 use crate::schedule::settings::{RenderSettings, threads};
@@ -136,7 +136,7 @@ pub fn coverage(
                     Some(_) if !has_interfaces => 1.0,
                     first => {
                         let mut media = Media::at_start(&mut tracer, &ray);
-                        Sight::along(&mut tracer, &mut media, &ray, first, |_, _| {}).coverage()
+                        CameraSegment::along(&mut tracer, &mut media, &ray, first, |_, _| {}).coverage()
                     }
                 }
             };
@@ -176,7 +176,7 @@ impl Sums {
             if event > 0 {
                 surface = tracer.closest(&ray);
             }
-            let sight = Sight::along(tracer, &mut media, &ray, surface, |_, _| {});
+            let sight = CameraSegment::along(tracer, &mut media, &ray, surface, |_, _| {});
             if event == 0 {
                 self.add_first(&sight);
             }
@@ -215,7 +215,7 @@ impl Sums {
     }
 
     /// Adds what the camera itself sees.
-    fn add_first(&mut self, sight: &Sight) {
+    fn add_first(&mut self, sight: &CameraSegment) {
         let [depth, weight] = sight.depth();
         self.depth += depth * weight;
         self.seen += weight;

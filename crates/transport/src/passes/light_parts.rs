@@ -17,7 +17,7 @@ use crate::sampling::splats::{Iterations, Splats};
 use crate::sampling::task::{FoundLight, Record, Task};
 use crate::schedule::progress::Progress;
 use crate::schedule::settings::{RenderSettings, threads};
-use crate::techniques::way::{LengthBins, Place, Way};
+use crate::techniques::optical_path::{LengthBins, OpticalPath, PathPoint};
 use crate::techniques::{Contribution, LightPathVisitor, Tally, Technique};
 use bilux_math::parallel::{install, try_for_each};
 use bilux_math::{Rgb, Vec2, Vec3};
@@ -273,11 +273,11 @@ struct PartTally<'a> {
 /// The lengths of the subpaths of a sample.
 #[derive(Default)]
 struct Lengths {
-    camera: Option<Way>,
+    camera: Option<OpticalPath>,
     /// Vertices of the camera subpath so far.
     vertices: u32,
     /// The light subpath up to each of its vertices.
-    light: Vec<Way>,
+    light: Vec<OpticalPath>,
     /// The connection that contributes next.
     join: Option<(Vec3, Vec3, Option<f32>)>,
 }
@@ -287,8 +287,9 @@ impl Lengths {
     fn of(&self, technique: Technique) -> f64 {
         let Technique::Connected { s, t } = technique else { return f64::INFINITY };
         let from_light = |s: u32| self.light.get(s as usize - 2);
-        let joined =
-            |way: &Way| self.join.map(|(from, towards, distance)| way.length_by(from, towards, distance));
+        let joined = |way: &OpticalPath| {
+            self.join.map(|(from, towards, distance)| way.length_by(from, towards, distance))
+        };
         let length = match (s, t) {
             // The camera subpath ends on the light, or escapes, which is no vertex.
             (0, t) => self.camera.filter(|_| t == self.vertices).map(|way| way.length()),
@@ -320,7 +321,7 @@ impl PartTally<'_> {
         let (ray, mut state) = eye.sample(SamplePlace { x, y, sample });
         if let Some(both_ends) = both_ends {
             if let Some(lengths) = &mut self.lengths {
-                (lengths.camera, lengths.vertices) = (Some(Way::from(ray.origin.into())), 1);
+                (lengths.camera, lengths.vertices) = (Some(OpticalPath::from(ray.origin.into())), 1);
                 lengths.light.clear();
             }
             let mut task = Task { context: &eye.context, tracer, sample: &mut state };
@@ -328,7 +329,7 @@ impl PartTally<'_> {
         } else if is_wanted && !ray.is_nowhere() {
             self.found.clear();
             let found = Some(std::mem::take(&mut self.found));
-            let way = self.lengths.as_ref().map(|_| Way::from(ray.origin.into()));
+            let way = self.lengths.as_ref().map(|_| OpticalPath::from(ray.origin.into()));
             state.record = Some(Box::new(Record { found, way, ..Record::default() }));
             let mut task = Task { context: &eye.context, tracer, sample: &mut state };
             self.sum = integrator.radiance(&ray, &mut task);
@@ -354,14 +355,19 @@ impl PartTally<'_> {
 }
 
 impl Tally<1> for PartTally<'_> {
-    fn reach(&mut self, place: impl FnOnce() -> Place) {
+    fn reach(&mut self, place: impl FnOnce() -> PathPoint) {
         if let Some(Lengths { camera: Some(way), vertices, .. }) = &mut self.lengths {
             way.reach(place());
             *vertices += 1;
         }
     }
 
-    fn reach_from_light(&mut self, depth: u32, start: impl FnOnce() -> Way, place: impl FnOnce() -> Place) {
+    fn reach_from_light(
+        &mut self,
+        depth: u32,
+        start: impl FnOnce() -> OpticalPath,
+        place: impl FnOnce() -> PathPoint,
+    ) {
         if let Some(Lengths { light, .. }) = &mut self.lengths {
             let before = light.last().copied().filter(|_| depth > 0);
             let mut way = before.unwrap_or_else(start);

@@ -10,7 +10,7 @@ use crate::film::window::{TILE, Window};
 use crate::film::zeroed;
 use crate::integrators::pixel_integrator::PixelIntegrator;
 use crate::media::Media;
-use crate::media::sight::Sight;
+use crate::media::camera_segment::CameraSegment;
 use crate::sampling::camera_rays::CameraRays;
 use crate::schedule::progress::Progress;
 use crate::schedule::settings::{RenderSettings, threads};
@@ -119,7 +119,7 @@ impl<'a> Look<'a> {
 fn covered(tracer: &mut Tracer, ray: &Ray, hit: &Hit, add: &mut impl FnMut(u32, f32)) {
     let first = tracer.surface(ray, hit);
     let mut media = Media::at_start(tracer, ray);
-    let sight = Sight::along(tracer, &mut media, ray, Some(first), &mut *add);
+    let sight = CameraSegment::along(tracer, &mut media, ray, Some(first), &mut *add);
     if let Some(surface) = sight.surface {
         add(surface.object, mean(sight.transmittance));
     }

@@ -10,7 +10,7 @@ use crate::film::zeroed;
 use crate::integrators::pixel_integrator::PixelIntegrator;
 use crate::light::choice::LightChoice;
 use crate::media::Media;
-use crate::media::sight::Sight;
+use crate::media::camera_segment::CameraSegment;
 use crate::sampling::sampler::PixelSampler;
 use crate::schedule::settings::{RenderSettings, threads};
 use bilux_math::parallel::{for_each, install};
@@ -214,7 +214,7 @@ fn hidden(tracer: &mut Tracer, ray: &Ray, catcher: ShadowCatcher) -> f64 {
         return if first.is_some() { 1.0 } else { 0.0 };
     }
     let mut media = Media::at_start(tracer, ray);
-    let sight = Sight::along(tracer, &mut media, ray, first, |_, _| {});
+    let sight = CameraSegment::along(tracer, &mut media, ray, first, |_, _| {});
     if sight.surface.as_ref().is_some_and(of_model) {
         1.0
     } else {
@@ -246,7 +246,7 @@ fn through_smoke(tracer: &mut Tracer, ray: &Ray) -> f32 {
     let (mut media, mut left) = (Media::at_start(tracer, &ray), 1.0);
     for _ in 0..MAX_PANES {
         let (first, mut stopped) = (tracer.closest(&ray), 0.0);
-        let sight = Sight::along(tracer, &mut media, &ray, first, |object, part| {
+        let sight = CameraSegment::along(tracer, &mut media, &ray, first, |object, part| {
             stopped += if scene.material_of(object).is_interface() { part } else { 0.0 };
         });
         left *= 1.0 - stopped;

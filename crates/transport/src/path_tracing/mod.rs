@@ -10,7 +10,7 @@ use crate::media::equiangular::{self, Approach};
 use crate::media::interaction::{Interaction, NO_OBJECT};
 use crate::media::{Arrival, Media, Travelled};
 use crate::sampling::task::{Context, PathVertex, Task, VertexKind};
-use crate::techniques::way::Way;
+use crate::techniques::optical_path::OpticalPath;
 use crate::walk::Walk;
 use crate::walk::segment::Segment;
 use crate::walk::through::Through;
@@ -112,7 +112,7 @@ impl PathTracing {
     fn glow(&self, path: &mut Path, emitted: Rgb, task: &mut Task) {
         let light = task.sample.seen(emitted, path.walk.is_split);
         path.light += light;
-        task.sample.find(path.walk.depth + 1, None, path.walk.ray.direction, light, Way::length);
+        task.sample.find(path.walk.depth + 1, None, path.walk.ray.direction, light, OpticalPath::length);
         task.sample.note_vertex(path.walk.depth, || {
             let at = Vec3::from(path.walk.ray.origin);
             (

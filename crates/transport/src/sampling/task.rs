@@ -5,7 +5,7 @@ use crate::film::splat_bounds::SplatBounds;
 use crate::light::choice::LightChoice;
 use crate::light::emission::Emission;
 use crate::sampling::sampler::PixelSampler;
-use crate::techniques::way::{Place, Way};
+use crate::techniques::optical_path::{OpticalPath, PathPoint};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Camera, Scene, Tracer, TransportMode, Wavelength};
 use std::sync::Arc;
@@ -55,7 +55,7 @@ pub struct Record {
     /// Number of the lights found that the point itself samples: their light comes straight, or through panes.
     pub(crate) straight: usize,
     /// The path from the camera, if the lengths of those that find light are wanted.
-    pub(crate) way: Option<Way>,
+    pub(crate) way: Option<OpticalPath>,
 }
 
 /// The tools of one sample.
@@ -184,7 +184,7 @@ impl SampleState {
         light: Option<usize>,
         towards: [f32; 3],
         radiance: Rgb,
-        length: impl FnOnce(&Way) -> f64,
+        length: impl FnOnce(&OpticalPath) -> f64,
     ) {
         let Some(Record { found: Some(found), way, .. }) = self.record.as_deref_mut() else { return };
         let length = way.as_ref().map_or(f64::INFINITY, length);
@@ -193,7 +193,7 @@ impl SampleState {
 
     /// Records that the path from the camera has come to a vertex, if its length is recorded.
     #[inline]
-    pub(crate) fn reach(&mut self, place: impl FnOnce() -> Place) {
+    pub(crate) fn reach(&mut self, place: impl FnOnce() -> PathPoint) {
         if let Some(way) = self.record.as_mut().and_then(|record| record.way.as_mut()) {
             way.reach(place());
         }

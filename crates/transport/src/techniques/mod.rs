@@ -4,9 +4,9 @@
 //! whose weights `auto` compares with its own; where there are none, `N` is 1 and they cost nothing.
 
 pub(crate) mod mis;
-pub(crate) mod way;
+pub(crate) mod optical_path;
 
-use crate::techniques::way::{Place, Way};
+use crate::techniques::optical_path::{OpticalPath, PathPoint};
 use bilux_math::{Rgb, Vec2, Vec3};
 use std::ops::{Add, Mul};
 
@@ -122,15 +122,15 @@ pub(crate) trait Tally<const N: usize> {
 
     /// Announces a vertex of the camera subpath, before what it contributes.
     #[inline(always)]
-    fn reach(&mut self, _place: impl FnOnce() -> Place) {}
+    fn reach(&mut self, _place: impl FnOnce() -> PathPoint) {}
 
     /// Announces a vertex of the light subpath, after so many events; the first one with what came before it.
     #[inline(always)]
     fn reach_from_light(
         &mut self,
         _depth: u32,
-        _start: impl FnOnce() -> Way,
-        _place: impl FnOnce() -> Place,
+        _start: impl FnOnce() -> OpticalPath,
+        _place: impl FnOnce() -> PathPoint,
     ) {
     }
 

@@ -120,7 +120,7 @@ fn bring_in(
         let fields = &layers.all[layer as usize].root().fields;
         let Some(name) = fields.text("defaultPrim").filter(|name| !name.is_empty()) else {
             let what = "a reference names no prim, and its layer has no defaultPrim: left out";
-            layers.oddities.note(what, || target.at.clone());
+            layers.diagnostics.note(what, || target.at.clone());
             return Ok(None);
         };
         path = if name.starts_with('/') { name.to_string() } else { format!("/{name}") };
@@ -130,14 +130,14 @@ fn bring_in(
         |(other, site): &(u32, String)| *other == stack && (is_within(site, &path) || is_within(&path, site));
     if chain.iter().any(circular) {
         let what = format!("{} is composed with itself or with a prim above it: left out there", path);
-        layers.oddities.note(&what, || target.at.clone());
+        layers.diagnostics.note(&what, || target.at.clone());
         return Ok(None);
     }
     let Some(found) = node_at(stack, &path, chain, layers)? else {
         // Classes need not exist.
         if matches!(arc, ArcKind::Reference | ArcKind::Payload) {
             let what = format!("there is no prim {path} in the layer that is referred to: left out");
-            layers.oddities.note(&what, || target.at.clone());
+            layers.diagnostics.note(&what, || target.at.clone());
         }
         return Ok(None);
     };
@@ -202,7 +202,7 @@ fn node_at(
     if chain.len() >= MAX_CHAIN || names.len() > MAX_DEPTH {
         let what = format!("references are nested more than {MAX_CHAIN} levels deep: the rest is left out");
         let at = layers.all[0].at(0);
-        layers.oddities.note(&what, || at);
+        layers.diagnostics.note(&what, || at);
         return Ok(None);
     }
     let mut node = Node::root(stack, layers);

@@ -7,7 +7,7 @@ use crate::mtlx;
 use crate::usda;
 use crate::usdc;
 use bilux_import::FormatError;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::Reading;
 use bilux_scene::Span;
 use std::borrow::Cow;
@@ -24,7 +24,7 @@ pub(crate) struct Stack {
 /// All layers of a read.
 pub(crate) struct Layers<'r, 'o, 'b> {
     pub(crate) reading: &'r mut Reading<'o>,
-    pub(crate) oddities: Oddities,
+    pub(crate) diagnostics: Diagnostics,
     pub(crate) all: Vec<Layer<'b>>,
     pub(super) stacks: Vec<Stack>,
     /// By file: its layer, or that it could not be read.
@@ -56,7 +56,7 @@ impl<'r, 'o, 'b> Layers<'r, 'o, 'b> {
         let mut layers = Layers {
             opened: reading.open.iter().map(|path| (path.clone(), Some(0))).collect(),
             reading,
-            oddities: Oddities::default(),
+            diagnostics: Diagnostics::default(),
             all: Vec::new(),
             stacks: Vec::new(),
             stack_of: HashMap::new(),
@@ -144,7 +144,7 @@ impl<'r, 'o, 'b> Layers<'r, 'o, 'b> {
     }
 
     fn left_out(&mut self, error: &FormatError, at: &Span) {
-        self.oddities.note(&format!("a layer is left out: {}", error.without_place()), || at.clone());
+        self.diagnostics.note(&format!("a layer is left out: {}", error.without_place()), || at.clone());
     }
 
     /// The layer in a file; `None`, with a warning, if it cannot be read.
@@ -160,7 +160,7 @@ impl<'r, 'o, 'b> Layers<'r, 'o, 'b> {
             }
             Err(error @ FormatError::TooLarge { .. }) => return Err(error),
             Err(error) => {
-                self.oddities.note(&format!("a layer is left out: {error}"), || at.clone());
+                self.diagnostics.note(&format!("a layer is left out: {error}"), || at.clone());
                 None
             }
         };
@@ -204,18 +204,18 @@ impl<'r, 'o, 'b> Layers<'r, 'o, 'b> {
     ) -> Result<(), FormatError> {
         let at = self.all[layer as usize].at(0);
         if open.contains(&layer) {
-            self.oddities.note("a layer is among its own sublayers: left out there", || at);
+            self.diagnostics.note("a layer is among its own sublayers: left out there", || at);
             return Ok(());
         }
         if open.len() >= MAX_STACKED || stack.layers.len() >= MAX_LAYERS {
-            self.oddities.note("there are too many sublayers of sublayers: the rest is left out", || at);
+            self.diagnostics.note("there are too many sublayers of sublayers: the rest is left out", || at);
             return Ok(());
         }
         stack.layers.push((layer, offset));
         let fields = &self.all[layer as usize].root().fields;
         if fields.find("relocates").or(fields.find("layerRelocates")).is_some() {
             let at = at.clone();
-            self.oddities.not_shown("relocates of prims", || at);
+            self.diagnostics.not_shown("relocates of prims", || at);
         }
         let fields = &self.all[layer as usize].root().fields;
         let rate = self.all[layer as usize].time_codes_per_second();

@@ -61,7 +61,7 @@ impl Composer {
     ) -> Result<(), FormatError> {
         if depth >= MAX_DEPTH {
             let at = layers.all[0].at(0);
-            layers.oddities.note("prims are nested too deeply: those further down are left out", || at);
+            layers.diagnostics.note("prims are nested too deeply: those further down are left out", || at);
             return Ok(());
         }
         for name in names(node, layers) {

@@ -55,7 +55,7 @@ pub(crate) fn polygons(
     drop(counts);
     if !is_whole {
         let what = "a mesh has faces with vertices that it does not have: these faces are left out";
-        scene.sink.oddities.note(what, || stage.at(prim));
+        scene.sink.diagnostics.note(what, || stage.at(prim));
     }
     holes(stage, prim, ends.len(), &mut is_hole, &mut scene.reading.budget)?;
     let budget = &mut scene.reading.budget;
@@ -201,9 +201,9 @@ pub(crate) fn note_subdivision(stage: &Stage, prim: u32, subdivision: &Subdivisi
         return;
     }
     let what = "subdivision surfaces are drawn as the polygons that control them";
-    scene.sink.oddities.remark(what, || stage.at(prim));
+    scene.sink.diagnostics.remark(what, || stage.at(prim));
     if subdivision.has_creases() {
-        scene.sink.oddities.not_shown("creases of subdivision surfaces", || stage.at(prim));
+        scene.sink.diagnostics.not_shown("creases of subdivision surfaces", || stage.at(prim));
     }
 }
 
@@ -239,7 +239,7 @@ pub(crate) fn pieces(
         (polygons.colours, polygons.opacities) = (colours, opacities);
         if !is_fine {
             let what = "a face has so many corners that it was treated as convex";
-            scene.sink.oddities.note(what, || stage.at(prim));
+            scene.sink.diagnostics.note(what, || stage.at(prim));
         }
         if !mesh.triangles.is_empty() {
             mesh.name = name_of(stage, prim).to_string();
@@ -284,7 +284,7 @@ pub(crate) fn uvs(
         found[set] = primvar.filter(|uv| uv.values.width >= 2);
         if found[set].is_none() && worn.uvs[set].is_some() {
             let what = "a material needs texture coordinates that its mesh does not have; they are set to 0";
-            scene.sink.oddities.note(what, || stage.at(prim));
+            scene.sink.diagnostics.note(what, || stage.at(prim));
         }
     }
     Ok(found)

@@ -29,7 +29,7 @@ pub(crate) fn pieces(
         return Ok(None);
     };
     if polygons.has_normals {
-        scene.sink.oddities.not_used("normals of subdivision surfaces", || stage.at(prim));
+        scene.sink.diagnostics.not_used("normals of subdivision surfaces", || stage.at(prim));
     }
     let worn: Vec<&Worn> = subsets.iter().map(|subset| &subset.worn).chain([rest]).collect();
     let file = stage.layers[0].name.clone();

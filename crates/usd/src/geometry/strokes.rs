@@ -119,7 +119,7 @@ pub(crate) fn curves(
     };
     if is_nurbs {
         let what = "NURBS curves are drawn as straight lines between their control points";
-        scene.sink.oddities.note(what, || stage.at(prim));
+        scene.sink.diagnostics.note(what, || stage.at(prim));
     }
     let widths = widths(stage, prim, scene)?;
     let colours = colours(stage, prim, worn, scene)?;

@@ -37,7 +37,7 @@ impl Light<'_> {
                         let what = format!(
                             "maps of domes in the format {format} as such (they are taken as latlong)"
                         );
-                        context.sink.oddities.not_shown(&what, || stage.at(self.prim));
+                        context.sink.diagnostics.not_shown(&what, || stage.at(self.prim));
                     }
                     let turned = self.turned(&texture, context)?;
                     context.sink.scene.textures.push(Arc::new(turned));
@@ -45,7 +45,7 @@ impl Light<'_> {
                     scale = self.radiance;
                 }
                 Err(error @ FormatError::TooLarge { .. }) => return Err(error),
-                Err(error) => context.sink.oddities.note(&error.without_place(), || at),
+                Err(error) => context.sink.diagnostics.note(&error.without_place(), || at),
             }
         }
         let spec =

@@ -45,7 +45,7 @@ struct Light<'a> {
 pub(crate) fn add(stage: &Stage, prim: u32, world: &DMat4, context: &mut Context) -> Result<(), FormatError> {
     let kind = stage.prim(prim).type_name.clone();
     if !KINDS.contains(&&*kind) {
-        context.sink.oddities.not_shown(&format!("lights of type {kind}"), || stage.at(prim));
+        context.sink.diagnostics.not_shown(&format!("lights of type {kind}"), || stage.at(prim));
         return Ok(());
     }
     let unstated = if &*kind == "DistantLight" { 50_000.0 } else { 1.0 };
@@ -59,19 +59,19 @@ pub(crate) fn add(stage: &Stage, prim: u32, world: &DMat4, context: &mut Context
     }
     let is_normalized = number(stage, prim, "normalize", 0.0, context)? != 0.0;
     if !stage.targets(prim, "light:filters").is_empty() {
-        context.sink.oddities.not_shown("filters of lights", || stage.at(prim));
+        context.sink.diagnostics.not_shown("filters of lights", || stage.at(prim));
     }
     let links = ["lightLink", "shadowLink"].map(|link| format!("collection:{link}:"));
     let is_listed =
         |link: &String| ["includes", "excludes"].map(|list| stage.targets(prim, &format!("{link}{list}")));
     if links.iter().flat_map(is_listed).any(|paths| !paths.is_empty()) {
-        context.sink.oddities.not_shown("which objects a light is for (light linking)", || stage.at(prim));
+        context.sink.diagnostics.not_shown("which objects a light is for (light linking)", || stage.at(prim));
     }
     for part in ["diffuse", "specular"] {
         if number(stage, prim, part, 1.0, context)? != 1.0 {
             let what =
                 "how much of a light diffuse or specular surfaces get (inputs:diffuse, inputs:specular)";
-            context.sink.oddities.not_shown(what, || stage.at(prim));
+            context.sink.diagnostics.not_shown(what, || stage.at(prim));
         }
     }
     if radiance.is_black() {
@@ -83,7 +83,7 @@ pub(crate) fn add(stage: &Stage, prim: u32, world: &DMat4, context: &mut Context
     };
     let light = Light { stage, prim, name: name_of(stage, prim), world, radiance, is_normalized, shaping };
     if world.determinant() == 0.0 || !world.is_finite() {
-        context.sink.oddities.note("a light has a scale of zero: left out", || stage.at(prim));
+        context.sink.diagnostics.note("a light has a scale of zero: left out", || stage.at(prim));
         return Ok(());
     }
     match &*kind {
@@ -123,7 +123,7 @@ impl Light<'_> {
     fn shaped(&self, radiance: Rgb, area: impl Fn(DVec3) -> f64, context: &mut Context) -> bool {
         let Some(shaping) = &self.shaping else { return false };
         let what = "the extent of lights that are shaped (cones, focus, profiles): they are points";
-        context.sink.oddities.not_shown(what, || self.stage.at(self.prim));
+        context.sink.diagnostics.not_shown(what, || self.stage.at(self.prim));
         let Some((distribution, peak)) = shaping.intensities(self.name, area) else { return true };
         let spec = Spec::new(self.name, "luminaire")
             .with("position", self.world.w_axis.truncate().as_vec3())
@@ -210,7 +210,7 @@ impl Light<'_> {
     fn note_texture(&self, context: &mut Context) -> Result<(), FormatError> {
         let file = self.stage.text(self.prim, "inputs:texture:file", &mut context.reading.budget)?;
         if file.is_some_and(|file| !file.is_empty()) {
-            context.sink.oddities.not_shown("textures of rectangular lights", || self.stage.at(self.prim));
+            context.sink.diagnostics.not_shown("textures of rectangular lights", || self.stage.at(self.prim));
         }
         Ok(())
     }

@@ -48,7 +48,7 @@ impl Shaping {
         let profile = profile(stage, prim, context)?;
         let tint = stage.value(prim, "inputs:shaping:focusTint", &mut context.reading.budget)?;
         if focus > 0.0 && tint.and_then(|tint| tint.tuple::<3>()).is_some_and(|tint| tint != [0.0; 3]) {
-            context.sink.oddities.not_shown("tints of focused lights", || stage.at(prim));
+            context.sink.diagnostics.not_shown("tints of focused lights", || stage.at(prim));
         }
         let shapes = cone.is_some() || focus > 0.0 || profile.is_some();
         Ok(shapes.then_some(Shaping { cone, focus, profile }))
@@ -127,7 +127,7 @@ fn profile(stage: &Stage, prim: u32, context: &mut Context) -> Result<Option<Pro
         Ok(distribution) => distribution,
         Err(error @ FormatError::TooLarge { .. }) => return Err(error),
         Err(error) => {
-            context.sink.oddities.note(&error.without_place(), || at);
+            context.sink.diagnostics.note(&error.without_place(), || at);
             return Ok(None);
         }
     };

@@ -24,7 +24,7 @@ pub(crate) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     layers.moments = moments[..needed].to_vec();
     let (prims, variants) = compose(&mut layers)?;
     let mut sink = Sink::for_bare_files();
-    sink.oddities = std::mem::take(&mut layers.oddities);
+    sink.diagnostics = std::mem::take(&mut layers.diagnostics);
     let mut stage = Stage::new(layers.all, prims);
     check_variant(reading, &variants, &stage)?;
     let moves = (0..stage.prims.len() as u32).any(|prim| stage.varies(prim));
@@ -42,7 +42,7 @@ pub(crate) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     sink.scene.environment_unspecified = !has_lamps && sink.scene.lights.is_empty();
     share_trees(&mut sink.scene);
     if sink.scene.objects.is_empty() && sink.scene.lights.is_empty() {
-        sink.oddities.note("there is nothing to render in this file", || stage.layers[0].at(0));
+        sink.diagnostics.note("there is nothing to render in this file", || stage.layers[0].at(0));
     }
     sink.scene.inventory.animations = animations;
     if seconds > 0.0 {
@@ -108,7 +108,7 @@ fn describe(stage: &Stage, sink: &mut Sink) {
     let fields = &stage.layers[0].root().fields;
     sink.scene.up = UpHint::Is(if stage.is_z_up() { Axis::Z } else { Axis::Y });
     if stands_still(&stage.layers[0]) {
-        sink.oddities.note("timeCodesPerSecond is 0: nothing moves", || stage.layers[0].at(0));
+        sink.diagnostics.note("timeCodesPerSecond is 0: nothing moves", || stage.layers[0].at(0));
     }
     let unit = fields.number("metersPerUnit");
     // Centimetres are what files without a unit are in.
@@ -116,6 +116,6 @@ fn describe(stage: &Stage, sink: &mut Sink) {
     if unit.is_some_and(|unit| !(1e-12..=1e12).contains(&unit)) {
         sink.scene.unit = 0.0;
         let what = "metersPerUnit is not the length of a unit that anybody has: it is ignored";
-        sink.oddities.note(what, || stage.layers[0].at(0));
+        sink.diagnostics.note(what, || stage.layers[0].at(0));
     }
 }

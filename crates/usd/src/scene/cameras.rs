@@ -17,7 +17,7 @@ pub(crate) fn add(stage: &Stage, prim: u32, world: &DMat4, context: &mut Context
     let budget = &mut context.reading.budget;
     let axis = |v: DVec3| world.transform_vector3(v).try_normalize();
     let (Some(forward), Some(up)) = (axis(DVec3::NEG_Z), axis(DVec3::Y)) else {
-        context.sink.oddities.note("a camera has a scale of zero: left out", || stage.at(prim));
+        context.sink.diagnostics.note("a camera has a scale of zero: left out", || stage.at(prim));
         return Ok(());
     };
     let mut number = |name: &str, default: f64| -> Result<f64, FormatError> {
@@ -39,7 +39,7 @@ pub(crate) fn add(stage: &Stage, prim: u32, world: &DMat4, context: &mut Context
     if !(width > 0.0 && height > 0.0 && length > 0.0) {
         context
             .sink
-            .oddities
+            .diagnostics
             .note("a camera has no aperture or no focal length: left out", || stage.at(prim));
         return Ok(());
     }

@@ -16,7 +16,7 @@ impl Scene<'_, '_> {
     pub(crate) fn copies(&mut self, stage: &Stage, prim: u32, state: &State) -> Result<(), FormatError> {
         if self.lineage.contains(&prim) {
             let what = "an instancer is its own prototype: left out there";
-            self.context.sink.oddities.note(what, || stage.at(prim));
+            self.context.sink.diagnostics.note(what, || stage.at(prim));
             return Ok(());
         }
         let file = &stage.layers[0].name;
@@ -30,7 +30,7 @@ impl Scene<'_, '_> {
         if groups.len() > most {
             let what =
                 "an instancer has too many colours: the last of its copies have those of its prototypes";
-            self.context.sink.oddities.note(what, || stage.at(prim));
+            self.context.sink.diagnostics.note(what, || stage.at(prim));
             let rest = groups.split_off(most).into_iter().flat_map(|(_, copies)| copies);
             let rest = rest.collect();
             groups.push((Look::default(), rest));
@@ -72,7 +72,7 @@ impl Scene<'_, '_> {
             let sink = &mut self.context.sink;
             if sink.scene.lights.len() > before.0 || sink.scene.cameras.len() > before.1 {
                 let what = "lights and cameras below a prototype of a PointInstancer";
-                sink.oddities.not_shown(what, || stage.at(prototype));
+                sink.diagnostics.not_shown(what, || stage.at(prototype));
             }
             sink.scene.lights.truncate(before.0);
             sink.scene.cameras.truncate(before.1);

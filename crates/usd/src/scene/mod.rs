@@ -130,7 +130,7 @@ impl<'r, 'o> Scene<'r, 'o> {
             }
             "NurbsPatch" | "TetMesh" | "HermiteCurves" if is_shown => {
                 let what = format!("prims of type {}", stage.prim(prim).type_name);
-                self.context.sink.oddities.not_shown(&what, || stage.at(prim));
+                self.context.sink.diagnostics.not_shown(&what, || stage.at(prim));
             }
             _ => {}
         }
@@ -161,7 +161,7 @@ impl<'r, 'o> Scene<'r, 'o> {
         let pose = match self.poses.get(&skeleton) {
             Some(pose) => pose.clone(),
             None => {
-                let pose = Pose::read(stage, skeleton, &mut reading.budget, &mut sink.oddities)?;
+                let pose = Pose::read(stage, skeleton, &mut reading.budget, &mut sink.diagnostics)?;
                 self.poses.entry(skeleton).or_insert(Arc::new(pose)).clone()
             }
         };
@@ -169,7 +169,7 @@ impl<'r, 'o> Scene<'r, 'o> {
         let can_bend = &*stage.prim(prim).type_name == "Mesh";
         if rig.as_ref().is_some_and(|rig| !can_bend && !rig.is_rigid()) {
             let what = "skins and blend shapes of prims that are not meshes";
-            sink.oddities.not_shown(what, || stage.at(prim));
+            sink.diagnostics.not_shown(what, || stage.at(prim));
             return Ok(None);
         }
         Ok(rig)
@@ -285,7 +285,7 @@ impl<'r, 'o> Scene<'r, 'o> {
             let placed = flat::placed(&part.mesh, world, budget, &stage.layers[0].name)?;
             let Some((mesh, motion)) = placed else {
                 let what = "a prim is scaled to a line or a point, or its place is not finite: left out";
-                self.context.sink.oddities.note(what, || stage.at(prim));
+                self.context.sink.diagnostics.note(what, || stage.at(prim));
                 continue;
             };
             let object =

@@ -54,11 +54,11 @@ fn fields(stage: &Stage, prim: u32, context: &mut Context) -> Vec<Field> {
             Some((field, "OpenVDBAsset")) => fields.push(Field { name, prim: field }),
             Some((field, kind)) => {
                 let what = format!("fields of volumes of type {kind}");
-                context.sink.oddities.not_shown(&what, || stage.at(field));
+                context.sink.diagnostics.not_shown(&what, || stage.at(field));
             }
             None => {
                 let what = format!("the field '{name}' of a volume is {target}, and there is no such prim");
-                context.sink.oddities.note(&what, || stage.at(prim));
+                context.sink.diagnostics.note(&what, || stage.at(prim));
             }
         }
     }
@@ -90,7 +90,7 @@ fn filled(
     };
     let Some(density) = density.filter(|density| density.maximum() > 0.0) else {
         let what = "a volume has no density: it is left out";
-        context.sink.oddities.note(what, || stage.at(prim));
+        context.sink.diagnostics.note(what, || stage.at(prim));
         return Ok(None);
     };
     let hot = named("temperature").filter(|hot| glows && field.is_some_and(|field| field.prim != hot.prim));
@@ -101,7 +101,7 @@ fn filled(
     for other in fields.iter().filter(|other| field.is_none_or(|field| field.name != other.name)) {
         if temperature.is_none() || &*other.name != "temperature" {
             let what = format!("the field '{}' of volumes", other.name);
-            context.sink.oddities.not_shown(&what, || stage.at(other.prim));
+            context.sink.diagnostics.not_shown(&what, || stage.at(other.prim));
         }
     }
     let here = |grid: Arc<Grid>| Density { grid, to_world: DMat4::IDENTITY };
@@ -121,7 +121,7 @@ fn filled(
     let name = name_of(stage, bound.unwrap_or(prim));
     let mut spec = Spec { span: at.clone(), ..Spec::new(name, "interface") };
     let Context { reading, sink, .. } = context;
-    fill(&mut spec, &medium, &DMat4::IDENTITY, &at, (reading, &mut sink.oddities))?;
+    fill(&mut spec, &medium, &DMat4::IDENTITY, &at, (reading, &mut sink.diagnostics))?;
     let material = sink.scene.add_material(spec);
     reading.budget.take_bytes(mesh.size(), &stage.layers[0].name)?;
     Ok(Some(Part { mesh: Arc::new(mesh), material }))
@@ -137,7 +137,7 @@ fn unstated(stage: &Stage, prim: u32, context: &mut Context) -> Result<Filling, 
     };
     let what = "a volume without a material that is read has its density as extinction per unit of length, of which it \
                 scatters its displayColor, or else .18";
-    context.sink.oddities.remark(what, || stage.at(prim));
+    context.sink.diagnostics.remark(what, || stage.at(prim));
     let density = "density".into();
     Ok(Filling { absorption: Rgb::WHITE - albedo, scattering: albedo, anisotropy: 0.0, density })
 }
@@ -158,7 +158,7 @@ fn grid(
     let file = found.as_ref().and_then(|found| found.value.text().map(|file| (found.layer, file)));
     let Some((layer, file)) = file.filter(|(_, file)| !file.is_empty()) else {
         let what = format!("the field '{}' of a volume names no file", field.name);
-        sink.oddities.note(&what, || at);
+        sink.diagnostics.note(&what, || at);
         return Ok(None);
     };
     let folder = stage.layers[layer as usize].folder.as_deref();
@@ -172,6 +172,6 @@ fn grid(
         Err(error @ FormatError::TooLarge { .. }) => return Err(error),
         Err(error) => error.without_place(),
     };
-    sink.oddities.note(&message, || at);
+    sink.diagnostics.note(&message, || at);
     Ok(None)
 }

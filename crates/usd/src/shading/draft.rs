@@ -80,6 +80,6 @@ impl Draft<'_, '_> {
     /// Names something that the picture does not show.
     pub(super) fn not_shown(&mut self, what: &str) {
         let (stage, shader) = (self.stage, self.shader);
-        self.sink.oddities.not_shown(what, || stage.at(shader));
+        self.sink.diagnostics.not_shown(what, || stage.at(shader));
     }
 }

@@ -54,6 +54,6 @@ pub(crate) fn material(
         Some(id) => format!("materials with the surface '{id}'"),
         None => "materials without a surface".to_owned(),
     };
-    sink.oddities.not_shown(&what, || stage.at(prim));
+    sink.diagnostics.not_shown(&what, || stage.at(prim));
     Ok(None)
 }

@@ -230,7 +230,7 @@ fn loaded(
         Ok(texture) => Ok(Ok(Some(Texture { channel: None, ..Texture::clone(&texture) }))),
         Err(error @ FormatError::TooLarge { .. }) => Err(error),
         Err(error) => {
-            draft.sink.oddities.note(&error.without_place(), || at);
+            draft.sink.diagnostics.note(&error.without_place(), || at);
             Ok(Err(name))
         }
     }

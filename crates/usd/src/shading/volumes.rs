@@ -53,7 +53,7 @@ pub(crate) fn filling(
         }
     }
     let what = format!("materials that say {unknown} of the inside of volumes");
-    context.sink.oddities.not_shown(&what, || stage.at(prim));
+    context.sink.diagnostics.not_shown(&what, || stage.at(prim));
     Ok(None)
 }
 
@@ -82,7 +82,7 @@ impl Inputs<'_, '_, '_> {
         let scattering = extinction * albedo.clamp(0.0, 1.0);
         if self.text("emission_mode")?.is_some_and(|mode| &*mode != "none") {
             let (stage, shader) = (self.stage, self.shader);
-            self.context.sink.oddities.not_shown("emission of 'standard_volume'", || stage.at(shader));
+            self.context.sink.diagnostics.not_shown("emission of 'standard_volume'", || stage.at(shader));
         }
         Ok(Filling {
             absorption: extinction - scattering,
@@ -115,7 +115,7 @@ impl Inputs<'_, '_, '_> {
             Input::Nothing => None,
             Input::Node(..) => {
                 let what = format!("what other shaders say of '{name}' of a volume");
-                self.context.sink.oddities.not_shown(&what, || stage.at(shader));
+                self.context.sink.diagnostics.not_shown(&what, || stage.at(shader));
                 None
             }
         })

@@ -5,7 +5,7 @@ use crate::stage::Stage;
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 use bilux_import::input::choice::named_or_numbered;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_math::glam::DQuat;
 use bilux_math::{DMat4, DVec3};
 use bilux_scene::Animation;
@@ -67,7 +67,7 @@ pub(super) fn played(
     stage: &Stage,
     prim: u32,
     budget: &mut Budget,
-    oddities: &mut Oddities,
+    diagnostics: &mut Diagnostics,
 ) -> Result<Played, FormatError> {
     let mut played = Played::default();
     let mut list = |name: &str| stage.array(prim, name, budget);
@@ -90,7 +90,7 @@ pub(super) fn played(
             played.joints = joints.iter().enumerate().map(|(i, name)| (name.clone(), joint(i))).collect();
         } else {
             let what = "an animation of a skeleton has not as many translations, rotations or scales as joints: these rest";
-            oddities.note(what, || stage.at(prim));
+            diagnostics.note(what, || stage.at(prim));
         }
     }
     if let Some(weights) = weights {

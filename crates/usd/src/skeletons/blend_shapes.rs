@@ -6,7 +6,7 @@ use crate::stage::Stage;
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 use bilux_import::geometry::deformation::amounts;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_math::Vec3;
 
 /// The blend shapes of a prim that are used, and how much there is of each.
@@ -36,7 +36,7 @@ pub(super) fn add(
     points: &mut [Vec3],
     turns: &mut Vec<Vec3>,
     budget: &mut Budget,
-    oddities: &mut Oddities,
+    diagnostics: &mut Diagnostics,
 ) -> Result<(), FormatError> {
     const BETWEEN: &str = "inbetweens:";
     let mut shapes: Vec<(f64, Text, Text)> = vec![(1.0, "offsets".into(), "normalOffsets".into())];
@@ -60,7 +60,7 @@ pub(super) fn add(
                     Some(point) => *point += Vec3::from(offsets.floats::<3>(i)) * amount as f32,
                     None => {
                         let what = "a blend shape moves a point that the mesh does not have";
-                        oddities.note(what, || stage.at(prim));
+                        diagnostics.note(what, || stage.at(prim));
                     }
                 }
             }

@@ -8,7 +8,7 @@ use crate::stage::transforms;
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 use bilux_import::geometry::deformation::{Blends, DualBlends, DualJoint};
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_math::DMat4;
 use std::sync::Arc;
 
@@ -36,7 +36,7 @@ impl Influences {
         binding: &Binding,
         pose: &Pose,
         budget: &mut Budget,
-        oddities: &mut Oddities,
+        diagnostics: &mut Diagnostics,
     ) -> Result<Option<Influences>, FormatError> {
         let (Some(of_indices), Some(of_weights)) = (binding.indices, binding.weights) else {
             return Ok(None);
@@ -50,7 +50,7 @@ impl Influences {
         if indices.len() != weights.len() {
             let what =
                 "a skinned prim has not as many weights as joints: it keeps the shape that it was bound in";
-            oddities.note(what, || stage.at(prim));
+            diagnostics.note(what, || stage.at(prim));
             return Ok(None);
         }
         let interpolation = stage.metadata(of_indices, INDICES, "interpolation");

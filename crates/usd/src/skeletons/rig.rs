@@ -44,8 +44,8 @@ impl Rig {
         reading: &mut Reading,
         sink: &mut Sink,
     ) -> Result<Option<Rig>, FormatError> {
-        let (budget, oddities) = (&mut reading.budget, &mut sink.oddities);
-        let influences = Influences::read(stage, prim, binding, pose, budget, oddities)?;
+        let (budget, diagnostics) = (&mut reading.budget, &mut sink.diagnostics);
+        let influences = Influences::read(stage, prim, binding, pose, budget, diagnostics)?;
         let shapes = blend_shapes::used(stage, prim, pose, budget)?;
         if influences.is_none() && shapes.is_empty() {
             return Ok(None);
@@ -91,9 +91,9 @@ impl Rig {
         sink: &mut Sink,
     ) -> Result<Bent, FormatError> {
         let mut bent = Bent::default();
-        let (budget, oddities) = (&mut reading.budget, &mut sink.oddities);
+        let (budget, diagnostics) = (&mut reading.budget, &mut sink.diagnostics);
         for &shape in &self.shapes {
-            blend_shapes::add(stage, shape, points, &mut bent.turns, budget, oddities)?;
+            blend_shapes::add(stage, shape, points, &mut bent.turns, budget, diagnostics)?;
         }
         let Some(influences) = self.influences.as_ref().filter(|all| all.rigid().is_none()) else {
             return Ok(bent);
@@ -106,7 +106,7 @@ impl Rig {
             }
             None => {
                 let what = "a skinned mesh has joints for another number of points: it keeps the shape that it was bound in";
-                oddities.note(what, || stage.at(prim));
+                diagnostics.note(what, || stage.at(prim));
             }
         }
         Ok(bent)

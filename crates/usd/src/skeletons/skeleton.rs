@@ -5,7 +5,7 @@ use crate::layers::value::{Array, Text};
 use crate::stage::Stage;
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_math::DMat4;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -29,7 +29,7 @@ impl Pose {
         stage: &Stage,
         skeleton: u32,
         budget: &mut Budget,
-        oddities: &mut Oddities,
+        diagnostics: &mut Diagnostics,
     ) -> Result<Pose, FormatError> {
         let names = stage.value(skeleton, "joints", budget)?.and_then(|value| value.texts());
         let names: Arc<[Text]> = names.unwrap_or_else(|| Arc::from([]));
@@ -41,7 +41,7 @@ impl Pose {
             names.iter().enumerate().map(|(i, name)| (name.clone(), i)).collect();
         let animation = stage.animation.or_else(|| source(stage, skeleton));
         let animated = match animation {
-            Some(animation) => played(stage, animation, budget, oddities)?,
+            Some(animation) => played(stage, animation, budget, diagnostics)?,
             None => Default::default(),
         };
         let of_all = |list: Option<Arc<Array>>| {
@@ -55,7 +55,7 @@ impl Pose {
         let Some(bound) = bound.filter(|_| has_places) else {
             if !names.is_empty() {
                 let what = "a skeleton does not say where each joint was bound and rests: meshes keep the shape that they were bound in";
-                oddities.note(what, || stage.at(skeleton));
+                diagnostics.note(what, || stage.at(skeleton));
             }
             return Ok(pose);
         };
@@ -74,7 +74,7 @@ impl Pose {
         if !is_sound {
             let what =
                 "some joints have transforms that cannot be inverted or are not finite: they move nothing";
-            oddities.note(what, || stage.at(skeleton));
+            diagnostics.note(what, || stage.at(skeleton));
         }
         Ok(pose)
     }

@@ -35,7 +35,7 @@ impl Context<'_, '_> {
         if mesh.positions.iter().any(|p| !p.is_finite()) {
             let what = "a mesh has positions that are infinite or not numbers (NaN); they are kept";
             let at = bilux_import::bytes::text::whole_file(&mesh.name.as_str().into());
-            self.sink.oddities.note(what, || at);
+            self.sink.diagnostics.note(what, || at);
         }
         Ok(())
     }

@@ -5,7 +5,7 @@ use crate::dae::document::Document;
 use crate::dae::element::Element;
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::world::between_keys::{bezier, slerp};
 use bilux_math::glam::DQuat;
 use bilux_math::{DMat4, DVec3};
@@ -35,7 +35,7 @@ impl Curve {
         inputs: &[Input<'d>],
         document: &Document<'d>,
         budget: &mut Budget,
-        oddities: &mut Oddities,
+        diagnostics: &mut Diagnostics,
     ) -> Result<Option<Curve>, FormatError> {
         let mut table = |semantic: &str| {
             input(inputs, semantic).map(|source| Table::<f64>::read(source, document, budget)).transpose()
@@ -65,7 +65,7 @@ impl Curve {
             "LINEAR" => Interpolation::Linear,
             _ => {
                 let what = "keys with other curves than Bézier's and Hermite's, or without tangents, are joined by lines";
-                oddities.note(what, || sampler.at());
+                diagnostics.note(what, || sampler.at());
                 Interpolation::Linear
             }
         };

@@ -9,7 +9,7 @@ use super::targets::target;
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 use bilux_import::input::choice::named_or_numbered;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_scene::Animation;
 use curve::Curve;
 use roxmltree::NodeId;
@@ -45,12 +45,12 @@ impl Pose {
         time: f32,
         wanted: Option<&str>,
         budget: &mut Budget,
-        oddities: &mut Oddities,
+        diagnostics: &mut Diagnostics,
     ) -> Result<Pose, FormatError> {
         let mut pose = Pose::default();
         let all: Vec<Element> =
             document.library("library_animations").filter(|a| a.name() == "animation").collect();
-        let mut clips = clips(document, oddities);
+        let mut clips = clips(document, diagnostics);
         if clips.is_empty() && !all.is_empty() {
             clips.push(Clip { name: String::new(), start: 0.0, end: f64::NAN, plays: None });
         }
@@ -74,13 +74,13 @@ impl Pose {
         for animation in all.into_iter().filter(is_chosen) {
             for channel in animation.descendants().filter(|element| element.name() == "channel") {
                 let spent = budget.spent();
-                let last = pose.play(channel, clip.start + f64::from(time), document, budget, oddities);
+                let last = pose.play(channel, clip.start + f64::from(time), document, budget, diagnostics);
                 match last {
                     Ok(last) => end = end.max(last.unwrap_or(0.0)),
                     Err(error @ FormatError::TooLarge { .. }) => return Err(error),
                     Err(error) => {
                         let what = format!("part of an animation is left out: {}", error.without_place());
-                        oddities.note(&what, || channel.at());
+                        diagnostics.note(&what, || channel.at());
                     }
                 }
                 budget.release(budget.spent() - spent);
@@ -112,15 +112,15 @@ impl Pose {
         time: f64,
         document: &Document,
         budget: &mut Budget,
-        oddities: &mut Oddities,
+        diagnostics: &mut Diagnostics,
     ) -> Result<Option<f64>, FormatError> {
-        let Some(sampler) = document.referred(channel, "source", oddities) else { return Ok(None) };
+        let Some(sampler) = document.referred(channel, "source", diagnostics) else { return Ok(None) };
         let Some(target) = target(channel.attribute("target").unwrap_or_default(), document) else {
             let what = "an animation is of something that the picture does not have, or that is not there";
-            oddities.remark(what, || channel.at());
+            diagnostics.remark(what, || channel.at());
             return Ok(None);
         };
-        let curve = Curve::read(sampler, &inputs(sampler, document), document, budget, oddities)?;
+        let curve = Curve::read(sampler, &inputs(sampler, document), document, budget, diagnostics)?;
         let Some(curve) = curve else { return Ok(None) };
         let values = curve.at(time);
         let sets = self.animated.entry(target.element.key()).or_default();
@@ -132,14 +132,14 @@ impl Pose {
 }
 
 /// The clips of a file.
-fn clips<'d>(document: &Document<'d>, oddities: &mut Oddities) -> Vec<Clip<'d>> {
+fn clips<'d>(document: &Document<'d>, diagnostics: &mut Diagnostics) -> Vec<Clip<'d>> {
     let library = document.library("library_animation_clips");
     let elements = library.filter(|element| element.name() == "animation_clip").take(MAX_CLIPS);
     let mut clips = Vec::new();
     for element in elements {
         let time = |name: &str| element.attribute(name)?.trim().parse::<f64>().ok().filter(|t| t.is_finite());
         let instances = element.children_named("instance_animation");
-        let plays = instances.filter_map(|one| document.referred(one, "url", oddities)).collect();
+        let plays = instances.filter_map(|one| document.referred(one, "url", diagnostics)).collect();
         clips.push(Clip {
             name: element.label(),
             start: time("start").unwrap_or(0.0),

@@ -42,7 +42,7 @@ pub(super) fn shaped<'d>(
             return Err(current.error("this controller deforms itself, or too many others"));
         }
         chain.push(child);
-        let Some(next) = document.referred(child, "source", workshop.oddities) else { return Ok(None) };
+        let Some(next) = document.referred(child, "source", workshop.diagnostics) else { return Ok(None) };
         current = next;
     }
     let Some(mesh) = geometry::read(current, document, workshop)? else { return Ok(None) };
@@ -50,7 +50,7 @@ pub(super) fn shaped<'d>(
     for controller in chain.into_iter().rev() {
         if controller.name() == "morph" && shaped.is_in_world {
             // Its shapes are where the mesh was before its bones moved it.
-            workshop.oddities.not_shown("morphs of meshes that bones have moved", || controller.at());
+            workshop.diagnostics.not_shown("morphs of meshes that bones have moved", || controller.at());
         } else if controller.name() == "morph" {
             morph::blend(controller, &mut shaped.mesh.polygons, posed, workshop)?;
         } else {

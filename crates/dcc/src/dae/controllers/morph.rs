@@ -38,7 +38,7 @@ pub(super) fn blend<'d>(
         let read = found.map(|found| shape_of(found, document, workshop)).transpose()?.flatten();
         let Some(shape) = read.filter(|shape| shape.positions.len() == rest.len()) else {
             let what = "a shape of a morph is missing, or has other vertices than the mesh: it is left out";
-            workshop.oddities.note(what, || morph.at());
+            workshop.diagnostics.note(what, || morph.at());
             continue;
         };
         let add = |sums: &mut [Vec3], rest: &[Vec3], shape: &[Vec3]| {

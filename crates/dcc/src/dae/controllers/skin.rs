@@ -94,14 +94,14 @@ fn add_weights(
                 }
                 None => {
                     let what = "a vertex follows a joint or has a weight that does not exist";
-                    workshop.oddities.note(what, || element.at());
+                    workshop.diagnostics.note(what, || element.at());
                 }
             }
         }
     }
     if counts.len() < blends.len() {
         let what = "some vertices of a skin have no weights, and stay on their node";
-        workshop.oddities.note(what, || element.at());
+        workshop.diagnostics.note(what, || element.at());
     }
     workshop.budget.release(4 * (counts.len() + indices.len()) as u64);
     Ok(())
@@ -141,7 +141,7 @@ fn places<'d>(
     let places: Vec<Option<DMat4>> = names.iter().map(|name| known.get(name).copied()).collect();
     if places.contains(&None) {
         let what = "a joint of a skin is not in the scene; its vertices stay on their node";
-        workshop.oddities.note(what, || placed.node.at());
+        workshop.diagnostics.note(what, || placed.node.at());
     }
     Ok(places)
 }

@@ -3,7 +3,7 @@
 use crate::dae::document::Document;
 use crate::dae::element::Element;
 use crate::dae::geometry::Symbol;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use roxmltree::NodeId;
 use std::hash::{Hash, Hasher};
 
@@ -50,14 +50,14 @@ impl<'d> Bindings<'d> {
     pub(in crate::dae) fn of(
         instance: Element<'d>,
         document: &Document<'d>,
-        oddities: &mut Oddities,
+        diagnostics: &mut Diagnostics,
     ) -> Bindings<'d> {
         let common = instance.path(&["bind_material", "technique_common"]);
         let elements = common.into_iter().flat_map(|common| common.children_named("instance_material"));
         let mut bound = Vec::new();
         for element in elements {
             let Some(symbol) = element.attribute("symbol") else { continue };
-            let material = document.referred(element, "target", oddities);
+            let material = document.referred(element, "target", diagnostics);
             bound.extend(material.map(|material| (symbol, element, material)));
         }
         Bindings { bound }

@@ -53,7 +53,7 @@ impl<'d> Filling<'_, '_, 'd, '_> {
     fn constant(&mut self) -> Result<(), FormatError> {
         let what = "an unlit material emits its colour, so it also lights its surroundings";
         let at = self.draft.spec.span.clone();
-        self.draft.sink.oddities.remark(what, || at);
+        self.draft.sink.diagnostics.remark(what, || at);
         // Some programs write the colour where the other models have it.
         let name = if self.effect.value("emission").is_some() { "emission" } else { "diffuse" };
         let colour = self.colour(name)?.unwrap_or(Rgb::BLACK);
@@ -137,7 +137,7 @@ impl<'d> Filling<'_, '_, 'd, '_> {
             Err(error @ FormatError::TooLarge { .. }) => return Err(error),
             Err(error) => {
                 let what = if is_data { "is left out" } else { "is replaced by a magenta checker" };
-                sink.oddities.note(&format!("a texture {what}: {}", error.without_place()), || map.at());
+                sink.diagnostics.note(&format!("a texture {what}: {}", error.without_place()), || map.at());
                 return Ok(None);
             }
         };
@@ -145,7 +145,7 @@ impl<'d> Filling<'_, '_, 'd, '_> {
         let second_uv = set.is_some_and(|set| self.worn.second_set.contains(&set));
         if set.is_some_and(|set| self.worn.further_sets.contains(&set)) {
             let what = "a texture has a third set of texture coordinates, and is placed by the first: use one of the first two";
-            sink.oddities.note(what, || map.at());
+            sink.diagnostics.note(what, || map.at());
         }
         Ok(Some(Texture { second_uv, ..texture }))
     }

@@ -2,7 +2,7 @@
 
 use crate::dae::document::Document;
 use crate::dae::element::Element;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 
 /// Reflection model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,10 +28,10 @@ impl<'d> Effect<'d> {
     pub(super) fn of(
         material: Element<'d>,
         document: &Document<'d>,
-        oddities: &mut Oddities,
+        diagnostics: &mut Diagnostics,
     ) -> Option<Effect<'d>> {
         let instance = material.child("instance_effect")?;
-        let element = document.referred(instance, "url", oddities)?;
+        let element = document.referred(instance, "url", diagnostics)?;
         let profile = element.child("profile_COMMON");
         let technique = profile.and_then(|profile| profile.child("technique"));
         let models = [
@@ -46,7 +46,7 @@ impl<'d> Effect<'d> {
         let Some((shader, model)) = shader else {
             let what =
                 "an effect has no common profile, only that of one kind of hardware: its material is plain";
-            oddities.note(what, || element.at());
+            diagnostics.note(what, || element.at());
             return None;
         };
         let scopes = [Some(instance), technique, profile, Some(element)];

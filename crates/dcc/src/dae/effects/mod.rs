@@ -38,7 +38,7 @@ impl<'d> Materials<'d> {
         let document = posed.document;
         reading.budget.take::<(Worn, Spec, [u8; 1024])>(1, document.root.file())?;
         let material = worn.material;
-        let spec = match material.and_then(|material| Effect::of(material, document, &mut sink.oddities)) {
+        let spec = match material.and_then(|material| Effect::of(material, document, &mut sink.diagnostics)) {
             Some(effect) => {
                 let mut spec = Spec::new(&material.map(|m| m.label()).unwrap_or_default(), "principled");
                 spec.span = effect.element.at();
@@ -46,7 +46,7 @@ impl<'d> Materials<'d> {
                 let mut filling = common::Filling { draft, effect: &effect, worn: &worn, posed };
                 filling.fill()?;
                 let spec = filling.draft.spec;
-                fitted(spec, &mut sink.oddities)
+                fitted(spec, &mut sink.diagnostics)
             }
             None => default_material(),
         };

@@ -46,7 +46,7 @@ impl Filling<'_, '_, '_, '_> {
         if opacity <= 0.0 {
             let at = self.draft.spec.span.clone();
             let what = "a material that is wholly transparent is read as opaque, as the programs mean it that write this";
-            self.draft.sink.oddities.note(what, || at);
+            self.draft.sink.diagnostics.note(what, || at);
         } else if opacity < 1.0 {
             self.draft.set("opacity", opacity as f32);
         }

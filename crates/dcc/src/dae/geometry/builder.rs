@@ -115,7 +115,7 @@ impl Builder {
         }
         if texture_sets(inputs).count() > 2 {
             let what = "sets of texture coordinates after the second";
-            workshop.oddities.not_used(what, || element.at());
+            workshop.diagnostics.not_used(what, || element.at());
         }
         let sets = texture_sets(inputs).map(|input| input.set.unwrap_or(0)).collect();
         let symbol = Symbol { name: element.attribute("material"), sets };
@@ -173,7 +173,7 @@ impl Builder {
         }
         if self.positions.values().iter().any(|p| !p.is_finite()) {
             let what = "positions have numbers that are infinite or not numbers (NaN); they are kept";
-            workshop.oddities.note(what, || geometry.at());
+            workshop.diagnostics.note(what, || geometry.at());
         }
         let colours = self.colours.map(Channel::into_layer).unwrap_or_default();
         Some(PolygonMesh {

@@ -38,9 +38,9 @@ pub(in crate::dae) fn lines<'d>(
             for ends in vertices.windows(2).step_by(step) {
                 match ends {
                     [Some(a), Some(b)] => lines.push([*a, *b]),
-                    _ => {
-                        workshop.oddities.note("a line refers to a vertex that does not exist", || list.at())
-                    }
+                    _ => workshop
+                        .diagnostics
+                        .note("a line refers to a vertex that does not exist", || list.at()),
                 }
             }
             workshop.budget.release(4 * indices.len() as u64);

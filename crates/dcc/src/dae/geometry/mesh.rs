@@ -23,7 +23,7 @@ pub(in crate::dae) fn read<'d>(
 ) -> Result<Option<Mesh<'d>>, FormatError> {
     for name in ["convex_mesh", "spline", "brep"] {
         if let Some(other) = geometry.child(name) {
-            workshop.oddities.not_shown(&format!("<{name}>"), || other.at());
+            workshop.diagnostics.not_shown(&format!("<{name}>"), || other.at());
         }
     }
     let Some(mesh) = geometry.child("mesh") else { return Ok(None) };
@@ -33,7 +33,7 @@ pub(in crate::dae) fn read<'d>(
     // The edges of surfaces; lines alone are shown.
     let edges = mesh.children().find(|element| LINES.contains(&element.name())).filter(|_| !all.is_empty());
     if let Some(edges) = edges {
-        workshop.oddities.not_shown("lines", || edges.at());
+        workshop.diagnostics.not_shown("lines", || edges.at());
     }
     let mut builder = Builder::for_inputs(all.iter().map(|(_, inputs)| &inputs[..]));
     let mut symbols: Vec<Symbol> = Vec::new();
@@ -43,7 +43,7 @@ pub(in crate::dae) fn read<'d>(
             let stride = stride_of(*element, inputs);
             Primitive { element: *element, stride }.add(&mut builder, workshop)?;
         } else {
-            workshop.oddities.note("polygons without positions are left out", || element.at());
+            workshop.diagnostics.note("polygons without positions are left out", || element.at());
         }
     }
     Ok(builder.finish(geometry, workshop).map(|polygons| Mesh { polygons, symbols }))

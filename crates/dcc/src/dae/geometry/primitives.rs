@@ -42,7 +42,7 @@ impl Primitive<'_> {
             let whole = indices.chunks_exact(3 * self.stride);
             if !whole.remainder().is_empty() {
                 let what = "a list of triangles ends within a triangle, which is left out";
-                workshop.oddities.note(what, || list.at());
+                workshop.diagnostics.note(what, || list.at());
             }
             for triangle in whole {
                 builder.polygon(triangle.chunks_exact(self.stride), list, workshop)?;
@@ -62,7 +62,7 @@ impl Primitive<'_> {
             let needed = usize::try_from(count).ok().and_then(|count| count.checked_mul(self.stride));
             let Some((polygon, after)) = needed.and_then(|needed| rest.split_at_checked(needed)) else {
                 let what = "a list of polygons has fewer indices than it says; the rest is left out";
-                workshop.oddities.note(what, || list.at());
+                workshop.diagnostics.note(what, || list.at());
                 break;
             };
             builder.polygon(polygon.chunks_exact(self.stride), list, workshop)?;
@@ -127,7 +127,7 @@ impl Primitive<'_> {
         let Some(around) = around else {
             let what =
                 "the holes of a polygon are filled: it has too many corners, or some that do not exist";
-            workshop.oddities.note(what, || element.at());
+            workshop.diagnostics.note(what, || element.at());
             return builder.polygon(outline.chunks_exact(self.stride), element, workshop);
         };
         let vertices: Vec<&[i32]> =

@@ -6,7 +6,7 @@ use crate::fbx::document::{Animated, Document, Index, Properties, display_name};
 use crate::fbx::transform::RotationOrder;
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::world::between_keys::slerp;
 use bilux_math::glam::DQuat;
 use bilux_math::transcendental::powf_f64;
@@ -36,7 +36,7 @@ pub(super) fn play<'d>(
     time: f64,
     animated: &mut HashMap<Index, Animated<'d>>,
     budget: &mut Budget,
-    oddities: &mut Oddities,
+    diagnostics: &mut Diagnostics,
 ) -> Result<(), FormatError> {
     // Objects may have many properties, and each many curves.
     let mut targets: HashMap<Index, Properties> = HashMap::new();
@@ -82,7 +82,7 @@ pub(super) fn play<'d>(
                     Err(error @ FormatError::TooLarge { .. }) => return Err(error),
                     Err(error) => {
                         let what = format!("part of an animation is left out: {}", error.without_place());
-                        oddities.note(&what, || document.object(node).node.at());
+                        diagnostics.note(&what, || document.object(node).node.at());
                         continue;
                     }
                 };

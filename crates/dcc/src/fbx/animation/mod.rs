@@ -11,7 +11,7 @@ use super::document::{Animated, Document, Index};
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
 use bilux_import::input::choice::named_or_numbered;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_scene::Animation;
 use clip::Clip;
 use std::collections::HashMap;
@@ -33,7 +33,7 @@ impl<'d> Pose<'d> {
         time: f32,
         wanted: Option<&str>,
         budget: &mut Budget,
-        oddities: &mut Oddities,
+        diagnostics: &mut Diagnostics,
     ) -> Result<Pose<'d>, FormatError> {
         let stacks: Vec<Index> =
             document.indices().filter(|&index| document.class(index) == b"AnimationStack").collect();
@@ -55,8 +55,10 @@ impl<'d> Pose<'d> {
             let ticks = clip.begin as f64 + f64::from(time) * document.settings.ticks;
             pose.seconds = ticks / document.settings.ticks;
             match stacks.get(chosen) {
-                Some(&stack) => layers::play(document, stack, ticks, &mut pose.animated, budget, oddities)?,
-                None => takes::play(document, takes[chosen], ticks, &mut pose.animated, budget, oddities)?,
+                Some(&stack) => {
+                    layers::play(document, stack, ticks, &mut pose.animated, budget, diagnostics)?
+                }
+                None => takes::play(document, takes[chosen], ticks, &mut pose.animated, budget, diagnostics)?,
             }
         }
         let is_cache = |index| document.object(index).kind == b"VertexCacheDeformer";

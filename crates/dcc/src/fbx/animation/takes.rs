@@ -7,7 +7,7 @@ use crate::fbx::document::{Animated, Document, Index, Properties, display_name};
 use crate::fbx::tree::{Node, Value};
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_math::DVec3;
 use std::collections::HashMap;
 
@@ -31,7 +31,7 @@ pub(super) fn play<'d>(
     time: f64,
     animated: &mut HashMap<Index, Animated<'d>>,
     budget: &mut Budget,
-    oddities: &mut Oddities,
+    diagnostics: &mut Diagnostics,
 ) -> Result<(), FormatError> {
     // Objects may have many properties, and each many channels.
     let mut targets: HashMap<Index, Properties> = HashMap::new();
@@ -59,7 +59,7 @@ pub(super) fn play<'d>(
                     Err(error @ FormatError::TooLarge { .. }) => return Err(error),
                     Err(error) => {
                         let what = format!("part of an animation is left out: {}", error.without_place());
-                        oddities.note(&what, || channel.at());
+                        diagnostics.note(&what, || channel.at());
                         continue;
                     }
                 };

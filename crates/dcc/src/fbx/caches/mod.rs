@@ -12,7 +12,7 @@ use super::document::{Index, display_name};
 use super::posed::Posed;
 use super::tree::Node;
 use bilux_import::FormatError;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::Reading;
 use bilux_math::Vec3;
 use file::{CacheFile, Counts};
@@ -32,7 +32,7 @@ impl Cached {
         geometry: Index,
         posed: &Posed,
         reading: &mut Reading,
-        oddities: &mut Oddities,
+        diagnostics: &mut Diagnostics,
     ) -> Result<Option<Cached>, FormatError> {
         let document = posed.document;
         let deformers = document.sources_of_class(geometry, "Deformer");
@@ -52,14 +52,14 @@ impl Cached {
                 Err(error @ FormatError::TooLarge { .. }) => return Err(error),
                 Err(error) => {
                     let what = format!("a cache of points is left out: {}", error.without_place());
-                    oddities.note(&what, || node.at());
+                    diagnostics.note(&what, || node.at());
                 }
             }
         }
         let found = found.filter(|cached| !cached.positions.is_empty());
         if found.iter().flat_map(|cached| &cached.positions).any(|p| !p.is_finite()) {
             let what = "a cache of points has numbers that are infinite or not numbers (NaN); they are kept";
-            oddities.note(what, || document.object(geometry).node.at());
+            diagnostics.note(what, || document.object(geometry).node.at());
         }
         Ok(found)
     }

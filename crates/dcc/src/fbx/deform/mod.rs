@@ -8,7 +8,7 @@ use super::document::{Document, Index, display_name};
 use super::graph::{Graph, Placed};
 use super::posed::Posed;
 use bilux_import::FormatError;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::Reading;
 use bilux_import::meshes::polygon_mesh::{Layer, Mapping, PolygonMesh, Workshop};
 
@@ -25,10 +25,10 @@ impl<'d> Deformers<'d> {
         geometry: Index,
         posed: &Posed<'d>,
         reading: &mut Reading,
-        oddities: &mut Oddities,
+        diagnostics: &mut Diagnostics,
     ) -> Result<Deformers<'d>, FormatError> {
         let document = posed.document;
-        let cached = Cached::read(geometry, posed, reading, oddities)?;
+        let cached = Cached::read(geometry, posed, reading, diagnostics)?;
         if cached.is_some() {
             return Ok(Deformers { skins: Vec::new(), shapes: Vec::new(), cached });
         }
@@ -82,7 +82,7 @@ impl<'d> Deformers<'d> {
         if let Some(&first) = self.skins.first() {
             if self.skins.len() > 1 {
                 let at = posed.document.object(first).node;
-                workshop.oddities.not_shown("second skins of meshes", || at.at());
+                workshop.diagnostics.not_shown("second skins of meshes", || at.at());
             }
             skin::bend(first, geometry, placed, posed, graph, workshop)?;
         }

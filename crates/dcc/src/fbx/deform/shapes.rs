@@ -94,7 +94,7 @@ impl Channel<'_> {
                     Some(position) => *position += offset(number, by),
                     None => {
                         let what = "a blend shape moves a vertex that the mesh does not have";
-                        workshop.oddities.note(what, || shape.at());
+                        workshop.diagnostics.note(what, || shape.at());
                     }
                 }
             }

@@ -39,7 +39,9 @@ pub(super) fn bend(
         let bound = matrix(cluster_node, "TransformLink", workshop.budget)?;
         let bound = bound.map(|bound| graph.to_world * bound);
         let Some(world) = bone.and_then(|bone| graph.world_of(bone)).or(bound) else {
-            workshop.oddities.note("a bone is missing, and does not move its vertices", || cluster_node.at());
+            workshop
+                .diagnostics
+                .note("a bone is missing, and does not move its vertices", || cluster_node.at());
             continue;
         };
         let to_bone = matrix(cluster_node, "Transform", workshop.budget)?.unwrap_or(DMat4::IDENTITY);
@@ -83,7 +85,7 @@ fn for_each_weight(
             Some(vertex) => add(vertex, *weight),
             None => {
                 let what = "a bone moves a vertex that the mesh does not have";
-                workshop.oddities.note(what, || cluster.at());
+                workshop.diagnostics.note(what, || cluster.at());
             }
         }
     }

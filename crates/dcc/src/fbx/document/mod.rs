@@ -15,7 +15,7 @@ pub(super) use settings::Settings;
 use super::tree::{Node, Tree, Value};
 use bilux_import::FormatError;
 use bilux_import::bytes::budget::Budget;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::Source;
 use connections::Connections;
 use keys::Key;
@@ -55,7 +55,7 @@ impl<'d> Document<'d> {
         tree: &'d Tree<'d>,
         source: &Source<'d>,
         budget: &mut Budget,
-        oddities: &mut Oddities,
+        diagnostics: &mut Diagnostics,
     ) -> Result<Document<'d>, FormatError> {
         let root = tree.root();
         check(tree)?;
@@ -77,7 +77,7 @@ impl<'d> Document<'d> {
             let object =
                 Object { node, name: names::without_class(name), kind: texts.next().unwrap_or_default() };
             if keys.contains_key(&key) {
-                oddities.note("two objects have the same number or name: the first is used", || node.at());
+                diagnostics.note("two objects have the same number or name: the first is used", || node.at());
                 continue;
             }
             keys.insert(key, objects.len() as Index);

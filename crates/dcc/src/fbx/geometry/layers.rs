@@ -61,7 +61,7 @@ pub(super) fn read<T: Copy, N: Number, const WIDTH: usize>(
         let name = quoted(layer.name());
         let what =
             format!("{name} belongs to something other than corners, vertices and polygons, and is left out");
-        workshop.oddities.note(&what, || layer.at());
+        workshop.diagnostics.note(&what, || layer.at());
         return Ok(Layer::default());
     }
     Ok(Layer::indexed(all, indices, mapping))

@@ -19,7 +19,7 @@ pub(super) fn read(
     let spent = workshop.budget.spent();
     let Some(surface) = Surface::read(node, workshop)? else {
         workshop
-            .oddities
+            .diagnostics
             .note("a NURBS surface is not one: its knots or points do not fit its orders", || node.at());
         return Ok(None);
     };
@@ -27,7 +27,7 @@ pub(super) fn read(
     let mesh = surface.polygons(node, name, workshop)?;
     workshop.budget.release(held);
     if mesh.positions.iter().any(|p| !p.is_finite()) {
-        workshop.oddities.note("a NURBS surface goes beyond all bounds, and is left out", || node.at());
+        workshop.diagnostics.note("a NURBS surface goes beyond all bounds, and is left out", || node.at());
         return Ok(None);
     }
     Ok(Some(mesh))

@@ -29,7 +29,7 @@ pub(in crate::fbx) fn read(
     })?;
     if positions.iter().any(|p| !p.is_finite()) {
         let what = "positions have numbers that are infinite or not numbers (NaN); they are kept";
-        workshop.oddities.note(what, || vertices.at());
+        workshop.diagnostics.note(what, || vertices.at());
     }
     let polygons = polygons::read(indices, positions.len(), workshop)?;
     if polygons.is_empty() {

@@ -94,7 +94,7 @@ fn transparency(properties: &Properties, draft: &mut Draft) -> Result<(), Format
         None if product >= 1.0 => {
             let at = draft.inner.spec.span.clone();
             let what = "a material that is wholly transparent, without an opacity, is read as opaque";
-            draft.inner.sink.oddities.note(what, || at);
+            draft.inner.sink.diagnostics.note(what, || at);
             0.0
         }
         _ => product,

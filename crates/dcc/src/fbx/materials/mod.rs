@@ -61,7 +61,7 @@ impl<'d> Materials<'d> {
                     draft.colour("base_color", bilux_math::Rgb::WHITE, worn.texture)?;
                 }
                 let spec = draft.inner.spec;
-                fitted(spec, &mut sink.oddities)
+                fitted(spec, &mut sink.diagnostics)
             }
         };
         let index = sink.scene.add_material(spec);

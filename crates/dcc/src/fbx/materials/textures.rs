@@ -42,7 +42,7 @@ impl Textures {
             let mut layers = document.sources_of_class(index, "Texture");
             let first = layers.next();
             if layers.next().is_some() {
-                sink.oddities.not_shown("textures above the first in layers", || node.at());
+                sink.diagnostics.not_shown("textures above the first in layers", || node.at());
             }
             return match first {
                 Some(first) => self.read(first, is_data, second_set, posed, reading, sink),
@@ -54,7 +54,7 @@ impl Textures {
             Err(error @ FormatError::TooLarge { .. }) => return Err(error),
             Err(error) => {
                 let what = if is_data { "is left out" } else { "is replaced by a magenta checker" };
-                sink.oddities.note(&format!("a texture {what}: {}", error.without_place()), || node.at());
+                sink.diagnostics.note(&format!("a texture {what}: {}", error.without_place()), || node.at());
                 if is_data {
                     return Ok(None);
                 }

@@ -5,7 +5,7 @@ use crate::document::json::JsonNode;
 use crate::document::meshopt;
 use crate::document::uri;
 use bilux_import::FormatError;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_import::input::reading::{Reading, Source};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -48,15 +48,16 @@ impl<'a> Document<'a> {
         container: &Container<'a>,
         reading: &mut Reading,
         source: &Source<'a>,
-        oddities: &mut Oddities,
+        diagnostics: &mut Diagnostics,
     ) -> Result<Document<'a>, FormatError> {
         let mut buffers = Vec::new();
         for (i, node) in root.list("buffers")?.into_iter().enumerate() {
             let wanted = node.need("byteLength")?.as_count()?;
             if node.get("uri").is_some_and(|uri| uri.as_text().is_ok_and(uri::is_odd)) {
-                oddities.note("the part of a data URI before its comma is malformed and is ignored", || {
-                    node.at()
-                });
+                diagnostics
+                    .note("the part of a data URI before its comma is malformed and is ignored", || {
+                        node.at()
+                    });
             }
             let bytes: Cow<[u8]> = match (node.get("uri"), container.binary) {
                 (Some(uri), _) => Cow::Owned(uri::load(reading, source, uri)?),
@@ -65,12 +66,12 @@ impl<'a> Document<'a> {
                 (None, _) => Cow::Borrowed(&[]),
             };
             if bytes.len() < wanted && !bytes.is_empty() {
-                oddities.note("a buffer is shorter than its byteLength says", || node.at());
+                diagnostics.note("a buffer is shorter than its byteLength says", || node.at());
             }
             buffers.push(bytes);
         }
         if container.binary.is_some_and(|b| !b.is_empty()) && buffers.is_empty() {
-            oddities.note("no buffer refers to the binary chunk, so it is not used", || root.at());
+            diagnostics.note("no buffer refers to the binary chunk, so it is not used", || root.at());
         }
         let size = buffers.iter().map(|b| b.len()).sum::<usize>() + source.bytes.len();
         let mut document = Document {

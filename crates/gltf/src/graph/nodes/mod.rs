@@ -7,7 +7,7 @@ use crate::document::json_document::Document;
 use crate::graph::animation::Pose;
 use crate::graph::place;
 use bilux_import::FormatError;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_math::{DMat4, DVec3};
 
 /// A node of the scene.
@@ -47,7 +47,7 @@ impl<'d> Graph<'d> {
         let document = data.document;
         let count = document.root.list("nodes")?.len();
         data.take_bytes((count * size_of::<[Placed; 2]>()) as u64)?;
-        let scene = shown_scene(document, data.oddities)?;
+        let scene = shown_scene(document, data.diagnostics)?;
         let roots = scene.map_or(Ok(Vec::new()), |scene| scene.list("nodes"))?;
         let at_origin = DMat4::from_translation(-origin);
         let mut waiting: Vec<(JsonNode<'d>, DMat4, bool, &'d str)> =
@@ -64,7 +64,7 @@ impl<'d> Graph<'d> {
             if !world.is_finite() {
                 return Err(node.error("the transform of this node overflows to numbers that are not finite"));
             }
-            let is_visible = is_parent_visible && is_visible(node, number, pose, data.oddities)?;
+            let is_visible = is_parent_visible && is_visible(node, number, pose, data.diagnostics)?;
             let category = category(node).unwrap_or(inherited);
             nodes.push(Placed { node, index: number, world, is_visible, category });
             let children = node.list("children")?;
@@ -91,7 +91,7 @@ fn is_visible(
     node: JsonNode,
     number: usize,
     pose: &Pose,
-    oddities: &mut Oddities,
+    diagnostics: &mut Diagnostics,
 ) -> Result<bool, FormatError> {
     let stated = match node.extension("KHR_node_visibility").and_then(|entry| entry.get("visible")) {
         Some(value) => value.as_switch()?,
@@ -100,7 +100,7 @@ fn is_visible(
     let is_visible = pose.is_visible(number).unwrap_or(stated);
     if !is_visible {
         let what = "a node is hidden by KHR_node_visibility, and with it all nodes below it";
-        oddities.remark(what, || node.at());
+        diagnostics.remark(what, || node.at());
     }
     Ok(is_visible)
 }
@@ -108,7 +108,7 @@ fn is_visible(
 /// The scene that is shown, if the file has one: the default one, or else the first.
 fn shown_scene<'d>(
     document: &Document<'d>,
-    oddities: &mut Oddities,
+    diagnostics: &mut Diagnostics,
 ) -> Result<Option<JsonNode<'d>>, FormatError> {
     let root = document.root;
     let scenes = root.list("scenes")?;
@@ -116,14 +116,14 @@ fn shown_scene<'d>(
     if scenes.len() > 1 {
         let (count, at) = (scenes.len(), || root.at_key("scenes"));
         if default.is_some() {
-            oddities.remark(&format!("the file has {count} scenes: the default one is shown"), at);
+            diagnostics.remark(&format!("the file has {count} scenes: the default one is shown"), at);
         } else {
-            oddities.note(&format!("the file has {count} scenes and no default: the first is shown"), at);
+            diagnostics.note(&format!("the file has {count} scenes and no default: the first is shown"), at);
         }
     }
     let scene = default.or(scenes.first().copied());
     if scene.is_none() && root.get("nodes").is_some() {
-        oddities.note("the file has no scene, so nothing in it is rendered", || root.at());
+        diagnostics.note("the file has no scene, so nothing in it is rendered", || root.at());
     }
     Ok(scene)
 }

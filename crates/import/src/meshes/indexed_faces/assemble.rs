@@ -5,7 +5,7 @@ use super::{Corner, FaceList, IndexedFaces, NONE, Run};
 use crate::FormatError;
 use crate::geometry::normals::{FLAT, Faces};
 use crate::geometry::polygon::Triangulator;
-use crate::input::oddities::Oddities;
+use crate::input::diagnostics::Diagnostics;
 use crate::input::reading::{Reading, Source, plain_material};
 use crate::input::sink::Sink;
 use bilux_math::{Rgb, Vec2, Vec3};
@@ -25,7 +25,7 @@ pub fn assemble(
     mut materials: HashMap<String, usize>,
     sink: &mut Sink,
 ) -> Result<(), FormatError> {
-    check_indices(&mut indexed, place, &mut sink.oddities)?;
+    check_indices(&mut indexed, place, &mut sink.diagnostics)?;
     if let Some(scheme) = reading.options.subdivide {
         return as_cage(scheme, reading, source, place, indexed, sink, |run, indexed, sink| {
             material_of(run, indexed, &mut materials, place, sink)
@@ -44,7 +44,7 @@ pub fn assemble(
     let mut run = 0;
     let mut finish = |piece: Piece, run: &Run, sink: &mut Sink| {
         let name = if run.name.is_empty() { source.stem() } else { run.name.clone() };
-        let mesh = Mesh { name: name.clone(), ..piece.into_mesh(run, place, &mut sink.oddities) };
+        let mesh = Mesh { name: name.clone(), ..piece.into_mesh(run, place, &mut sink.diagnostics) };
         let material = material_of(run, &indexed, &mut materials, place, sink);
         sink.scene.objects.push(Object::new(&name, Arc::new(mesh), material));
     };
@@ -59,7 +59,7 @@ pub fn assemble(
         if piece.add_face(face, corners, &mut welder, &mut triangulator).is_none() {
             let what =
                 "a concave polygon has too many corners to triangulate exactly and is treated as convex";
-            sink.oddities.note(what, || place(indexed.places.at(face)));
+            sink.diagnostics.note(what, || place(indexed.places.at(face)));
         }
         reading.budget.take::<Vertex>(piece.made.len() - made, source.name)
     })?;
@@ -93,7 +93,7 @@ fn run_sizes(indexed: &IndexedFaces, faces: &FaceList) -> Vec<RunSize> {
 fn check_indices(
     indexed: &mut IndexedFaces,
     place: &dyn Fn(u64) -> Span,
-    oddities: &mut Oddities,
+    diagnostics: &mut Diagnostics,
 ) -> Result<(), FormatError> {
     let mut first_fault = None;
     let counts = [indexed.positions.len(), indexed.uvs.len(), indexed.normals.len()].map(|n| n as u32);
@@ -118,7 +118,7 @@ fn check_indices(
             }
             if is_first {
                 first_fault.get_or_insert_with(|| FormatError::malformed(message.clone(), at()));
-                oddities.note_first(": this face is left out", || message, at);
+                diagnostics.note_first(": this face is left out", || message, at);
             }
             continue;
         }
@@ -126,7 +126,7 @@ fn check_indices(
             if corner[part] != NONE && corner[part] >= counts[part] {
                 corner[part] = NONE;
                 let what = "a face refers to texture coordinates or a normal that the file does not have";
-                oddities.note(what, || place(places.at(face)));
+                diagnostics.note(what, || place(places.at(face)));
             }
         }
     }
@@ -206,7 +206,7 @@ pub fn material_of(
         let what = format!(
             "the material '{name}' is not in any material library that was read: a plain one is used instead"
         );
-        sink.oddities.note(&what, || place(offset));
+        sink.diagnostics.note(&what, || place(offset));
     }
     let mut spec = plain_material(indexed.has_colours(), !indexed.specular.is_empty());
     if offset.is_some() {
@@ -339,12 +339,12 @@ impl<'s> Piece<'s> {
     }
 
     /// Finishes the mesh; it has texture coordinates at all vertices or at none.
-    fn into_mesh(mut self, run: &Run, place: &dyn Fn(u64) -> Span, oddities: &mut Oddities) -> Mesh {
+    fn into_mesh(mut self, run: &Run, place: &dyn Fn(u64) -> Span, diagnostics: &mut Diagnostics) -> Mesh {
         if !self.has_uvs {
             self.mesh.uvs = Vec::new();
         } else if self.lacks_uvs {
             let what = "some corners of an object have no texture coordinates; they are set to 0";
-            oddities.note(what, || place(self.indexed.places.at(run.first_face)));
+            diagnostics.note(what, || place(self.indexed.places.at(run.first_face)));
         }
         let mesh = &mut self.mesh;
         mesh.positions.shrink_to_fit();

@@ -24,7 +24,7 @@ pub(super) fn as_cage(
     let mut cage = Cage::new(scheme, &indexed.positions);
     cage.set_colours(&indexed.colours);
     if !indexed.specular.is_empty() || !indexed.face_colours.is_empty() {
-        sink.oddities.not_shown("colours of faces and specular colours of subdivision surfaces", || {
+        sink.diagnostics.not_shown("colours of faces and specular colours of subdivision surfaces", || {
             place(indexed.places.at(0))
         });
     }

@@ -114,7 +114,7 @@ impl PolygonMesh {
 pub fn reflectances(mut colours: Layer<Rgb>, workshop: &mut Workshop, at: impl Fn() -> Span) -> Layer<Rgb> {
     if colours.values().iter().all(|colour| colour.is_black()) {
         if !colours.is_empty() {
-            workshop.oddities.not_used("colours of vertices that are all black", at);
+            workshop.diagnostics.not_used("colours of vertices that are all black", at);
         }
         return Layer::default();
     }

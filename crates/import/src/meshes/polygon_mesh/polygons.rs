@@ -37,9 +37,9 @@ impl Polygons {
         let count = self.corners.len() - start;
         if !is_whole {
             let what = "a polygon refers to a vertex that the mesh does not have, and is left out";
-            workshop.oddities.note(what, &at);
+            workshop.diagnostics.note(what, &at);
         } else if count < 3 {
-            workshop.oddities.not_shown("lines and points among polygons", &at);
+            workshop.diagnostics.not_shown("lines and points among polygons", &at);
         }
         if !is_whole || count < 3 {
             workshop.budget.take::<u32>(1, file)?;

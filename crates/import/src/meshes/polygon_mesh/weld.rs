@@ -155,7 +155,7 @@ impl Welder {
             if exact.is_none() {
                 let what =
                     "a concave polygon has too many corners to triangulate exactly and is treated as convex";
-                workshop.oddities.note(what, bilux_scene::Span::default);
+                workshop.diagnostics.note(what, bilux_scene::Span::default);
             }
         }
         if geometry.is_mirrored {

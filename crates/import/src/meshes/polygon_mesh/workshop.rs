@@ -1,12 +1,12 @@
-//! Budget, oddities and options for reading meshes.
+//! Budget, diagnostics and options for reading meshes.
 
 use crate::bytes::budget::Budget;
-use crate::input::oddities::Oddities;
+use crate::input::diagnostics::Diagnostics;
 
-/// Budget, oddities and crease angle that a reader of meshes needs besides the mesh.
+/// Budget, diagnostics and crease angle that a reader of meshes needs besides the mesh.
 pub struct Workshop<'r> {
     pub budget: &'r mut Budget,
-    pub oddities: &'r mut Oddities,
+    pub diagnostics: &'r mut Diagnostics,
     /// Faces that meet at a smaller angle are smooth, in degrees.
     pub crease_angle: f32,
 }

@@ -3,7 +3,7 @@
 use super::{Catalogue, GRID_FORMATS, Listed, ReadSurface, Volume, format_of};
 use crate::FormatError;
 use crate::bytes::text::whole_file;
-use crate::input::oddities::Oddities;
+use crate::input::diagnostics::Diagnostics;
 use crate::input::reading::{Reading, Source, plain_material};
 use crate::input::sink::Sink;
 use crate::tables::formats::{ReadFormat, SceneFormatEntry};
@@ -50,9 +50,9 @@ fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatEr
     let volume = reading.volume(format, source, listed)?;
     let complaints = volume.complaints();
     let Volume { grid, bounds, .. } = volume;
-    let mut oddities = Oddities::default();
+    let mut diagnostics = Diagnostics::default();
     for Listed { name, .. } in catalogue.grids.iter().filter(|other| other.index != listed.index) {
-        oddities.not_shown(&format!("the grid '{name}'"), at);
+        diagnostics.not_shown(&format!("the grid '{name}'"), at);
     }
     let mut scene = SceneBuilder::default();
     let densest = densest_way(&grid);
@@ -79,7 +79,7 @@ fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatEr
     if let Some(up) = catalogue.up {
         scene.up = up;
     }
-    oddities.into_warnings(&mut scene);
+    diagnostics.into_warnings(&mut scene);
     Ok(scene)
 }
 
@@ -96,11 +96,11 @@ fn surfaces(
     for listed in &catalogue.grids {
         let found = if listed.is_level_set { surface(source, listed, &mut reading.budget)? } else { None };
         let Some(mesh) = found else {
-            sink.oddities.not_shown(&format!("the grid '{}'", listed.name), at);
+            sink.diagnostics.not_shown(&format!("the grid '{}'", listed.name), at);
             continue;
         };
         let what = "a level set is shown as its surface, by triangles as large as its voxels";
-        sink.oddities.remark(what, at);
+        sink.diagnostics.remark(what, at);
         let name = if listed.name.is_empty() { source.stem() } else { listed.name.clone() };
         sink.scene.objects.push(Object::new(&name, Arc::new(mesh), material));
     }

@@ -84,7 +84,7 @@ pub(super) fn coating(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>
     let alpha = maker.even(plugin, "alpha", Meaning::Number)?.map_or(0.0, |c| c.r);
     for name in ["sigma_a", "specular_reflectance"] {
         if plugin.has(name) {
-            maker.oddities.not_shown(&format!("'{name}' of {}", plugin.named()), || plugin.place(name));
+            maker.diagnostics.not_shown(&format!("'{name}' of {}", plugin.named()), || plugin.place(name));
         }
     }
     let Some(base) = maker.document.part_of(plugin, "bsdf")? else {

@@ -67,7 +67,7 @@ pub(super) fn material(maker: &mut Maker, plugin: &Rc<Plugin>) -> Result<Option<
         }
     };
     let made = maker.within(plugin, |maker| make(maker, plugin))?;
-    plugin.report_unused(&mut maker.oddities);
+    plugin.report_unused(&mut maker.diagnostics);
     Ok(made.map(|spec| {
         let name = if plugin.id.is_empty() { spec.name.clone() } else { plugin.id.clone() };
         Spec { name, span: plugin.at.clone(), ..spec }

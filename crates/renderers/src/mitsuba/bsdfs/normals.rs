@@ -51,7 +51,7 @@ pub(super) fn bump_map(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec
     let Some(mut spec) = base(maker, plugin)? else { return Ok(None) };
     if let Some(map) = map {
         let what = "bumps are rendered by normals of heights, for the mean size of a picture on a shape";
-        maker.oddities.remark(what, || plugin.at.clone());
+        maker.diagnostics.remark(what, || plugin.at.clone());
         let bytes = (map.width() * map.height() * 4) as u64;
         maker.reading.budget.take_bytes(bytes, &plugin.at.file)?;
         let factor = map.factor.luminance() * scale;

@@ -104,12 +104,12 @@ impl Maker<'_, '_> {
             "beckmann" if has_choice => spec.parameters.set("distribution", "beckmann"),
             other if has_choice => {
                 let what = format!("microfacets of '{other}' are rendered as Beckmann's");
-                self.oddities.remark(&what, || plugin.place("distribution"));
+                self.diagnostics.remark(&what, || plugin.place("distribution"));
                 spec.parameters.set("distribution", "beckmann");
             }
             _ => {
                 let what = "microfacets over a diffuse base are those of GGX here, whatever 'distribution' says: highlights have longer tails";
-                self.oddities.remark(what, || plugin.at.clone());
+                self.diagnostics.remark(what, || plugin.at.clone());
             }
         }
         let even = self.source_or(plugin, "alpha", Meaning::Number, ALPHA)?;
@@ -139,7 +139,7 @@ impl Maker<'_, '_> {
             let factor = self.source(plugin, name, Meaning::Surface)?;
             if factor.is_some_and(|factor| factor.mean() != Rgb::WHITE) {
                 let what = format!("'{name}' of {}", plugin.named());
-                self.oddities.not_shown(&what, || plugin.place(name));
+                self.diagnostics.not_shown(&what, || plugin.place(name));
             }
         }
         Ok(())

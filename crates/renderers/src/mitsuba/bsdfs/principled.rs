@@ -108,7 +108,7 @@ pub(super) fn thin(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, F
         maker.set(&mut spec, "transmission_color", colour.clone(), &at);
         let what =
             "thin walls spread what passes as much as what they reflect: in Mitsuba they spread it less";
-        maker.oddities.remark(what, || plugin.at.clone());
+        maker.diagnostics.remark(what, || plugin.at.clone());
     }
     if plugin.has("diff_trans") {
         // At 2, all diffuse light is transmitted.
@@ -167,7 +167,7 @@ fn common(
             spec.parameters.set("fuzz_color", Rgb::WHITE.lerp(hue, tint).clamp(0.0, 1.0));
         }
         let what = "sheen is rendered as fuzz that reflects as much";
-        maker.oddities.remark(what, || plugin.place("sheen"));
+        maker.diagnostics.remark(what, || plugin.place("sheen"));
     }
     Ok(spec)
 }
@@ -177,7 +177,7 @@ fn not_shown(maker: &mut Maker, plugin: &Plugin, names: &[&'static str]) -> Resu
         let is_there = maker.source(plugin, name, Meaning::Number)?.is_some_and(|source| !source.is_black());
         if is_there {
             let what = format!("'{name}' of {}", plugin.named());
-            maker.oddities.not_shown(&what, || plugin.place(name));
+            maker.diagnostics.not_shown(&what, || plugin.place(name));
         }
     }
     Ok(())

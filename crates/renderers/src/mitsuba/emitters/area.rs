@@ -26,7 +26,7 @@ pub(in crate::mitsuba) fn emission(
     let radiance = maker.source_or(plugin, "radiance", Meaning::Light, 1.0)?;
     let radiance = radiance.scaled(Rgb::grey(plugin.number_or("scale", 1.0)?.max(0.0) as f32));
     plugin.ignore(&["sampling_weight"]);
-    plugin.report_unused(&mut maker.oddities);
+    plugin.report_unused(&mut maker.diagnostics);
     Ok(Some(Emission(radiance)))
 }
 

@@ -36,7 +36,7 @@ const EMITTERS: &[(&str, Make)] = &[
 pub(super) fn light(maker: &mut Maker, plugin: &Rc<Plugin>) -> Result<Vec<Spec>, FormatError> {
     let made = row(plugin, EMITTERS)?(maker, plugin)?;
     plugin.ignore(&["sampling_weight", "scene_bsphere"]);
-    plugin.report_unused(&mut maker.oddities);
+    plugin.report_unused(&mut maker.diagnostics);
     Ok(made
         .into_iter()
         .map(|spec| Spec { name: plugin.id.clone(), span: plugin.at.clone(), ..spec })

@@ -51,7 +51,7 @@ fn make(
     if let Some(name) = attribute.filter(|_| !is_coloured) {
         let what =
             format!("a mesh has no attribute '{}' of three numbers: it is taken as 1", shortened(&name));
-        maker.maker.oddities.note(&what, || at.clone());
+        maker.maker.diagnostics.note(&what, || at.clone());
     }
     let reading = &mut *maker.maker.reading;
     let shown: Arc<str> = path.display().to_string().into();

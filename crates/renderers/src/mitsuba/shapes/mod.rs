@@ -44,7 +44,7 @@ pub(super) fn pieces(maker: &mut ShapeMaker, plugin: &Rc<Plugin>) -> Result<Vec<
     let make = row(plugin, SHAPES)?;
     let made = make(maker, plugin)?;
     plugin.ignore(&["flip_normals", "face_normals", "id"]);
-    plugin.report_unused(&mut maker.maker.oddities);
+    plugin.report_unused(&mut maker.maker.diagnostics);
     Ok(made)
 }
 

@@ -100,7 +100,7 @@ fn material_of(entity: &Entity, maker: &mut MaterialMaker) -> Result<Option<Spec
         let map = TextureOrValue::Picture(Arc::new(maker.loader().file(name, Texels::Numbers(None), &at)?));
         spec.parameters.set_at("normal", maker.textures.value(map), at);
     }
-    list.report_unused(&mut maker.loader().oddities);
+    list.report_unused(&mut maker.loader().diagnostics);
     Ok(Some(spec))
 }
 

@@ -44,7 +44,7 @@ pub(super) fn interface(world: &mut World, of: &Primitive, scale: f64) -> Spec {
     let outside = &of.reals[4..7];
     if outside.iter().any(|passed| *passed < 1.0) {
         let what = "what is outside of an 'interface' absorbs nothing here";
-        world.oddities.note(what, || of.at.clone());
+        world.diagnostics.note(what, || of.at.clone());
     }
     let index = of.reals[3] / of.reals[7];
     Spec::new("", "dielectric").with("eta", held(index)).with("absorption", absorption(of.colour(), scale))

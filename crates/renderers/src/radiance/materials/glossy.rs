@@ -23,7 +23,7 @@ fn parts(world: &mut World, of: &Primitive, brushed: bool) -> ([f64; 3], f64, f6
     let [u, v] = [of.reals[4], of.reals[if brushed { 5 } else { 4 }]].map(|alpha| alpha.clamp(0.0, 1.0));
     if brushed && u != v {
         let what = "brushed surfaces (plastic2, metal2, trans2) are as rough along as across";
-        world.oddities.note(what, || of.at.clone());
+        world.diagnostics.note(what, || of.at.clone());
     }
     (of.colour(), specular, (u * v).sqrt())
 }
@@ -72,7 +72,7 @@ pub(super) fn trans(world: &mut World, of: &Primitive) -> Result<Spec, FormatErr
     let straight = passed * straight;
     if straight > 0.0 && alpha > 0.0 {
         let what = "what a rough 'trans' lets straight through is not spread";
-        world.oddities.note(what, || of.at.clone());
+        world.diagnostics.note(what, || of.at.clone());
     }
     let of_rest = |amount: f64| share(colour.map(|c| c * amount / (1.0 - straight).max(1e-9)));
     let spread = Spec::new("", "translucent")
@@ -92,7 +92,7 @@ pub(super) fn ashikhmin(world: &mut World, of: &Primitive) -> Result<Spec, Forma
     let tint = if most > 0.0 { specular * (1.0 / most) } else { specular };
     if of.reals[6] != of.reals[7] {
         let what = "brushed surfaces (ashik2) are as rough along as across";
-        world.oddities.note(what, || of.at.clone());
+        world.diagnostics.note(what, || of.at.clone());
     }
     mix(world, diffuse(of.colour()), gloss(tint, (2.0 / (power + 2.0)).sqrt()), f64::from(most), &of.at)
 }

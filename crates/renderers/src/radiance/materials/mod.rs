@@ -36,7 +36,7 @@ pub(super) fn material(
         }
         Finish::Prism | Finish::Antimatter => {
             let what = format!("the {} '{}', which is not seen", of.word, of.name);
-            world.oddities.not_shown(&what, || of.at.clone());
+            world.diagnostics.not_shown(&what, || of.at.clone());
             return Ok(None);
         }
         Finish::Light | Finish::Illum | Finish::Glow | Finish::Spotlight => return Ok(None),

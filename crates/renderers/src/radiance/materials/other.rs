@@ -13,7 +13,7 @@ pub(super) fn mirror(of: &Primitive) -> Spec {
 /// The diffuse part of a material whose gloss is a function or data in a file.
 pub(super) fn measured(world: &mut World, finish: Finish, of: &Primitive) -> Spec {
     let what = format!("the functions and data of the {} '{}'", of.word, of.name);
-    world.oddities.not_shown(&what, || of.at.clone());
+    world.diagnostics.not_shown(&what, || of.at.clone());
     let number = |i: usize| of.reals.get(i).copied().unwrap_or(0.0).clamp(0.0, 1.0);
     let triple = |first: usize| share([number(first), number(first + 1), number(first + 2)]);
     match finish {

@@ -7,7 +7,7 @@ use crate::radiance::sky_model::{Form, Sky};
 use crate::radiance::statement::Statement;
 use crate::radiance::units::EFFICACY;
 use bilux_import::FormatError;
-use bilux_import::input::oddities::Oddities;
+use bilux_import::input::diagnostics::Diagnostics;
 use bilux_math::transcendental::cos_f64;
 use bilux_scene::Span;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -44,7 +44,7 @@ enum Unit {
 pub(in super::super) fn generate(
     words: &[Rc<str>],
     at: &Span,
-    oddities: &mut Oddities,
+    diagnostics: &mut Diagnostics,
 ) -> Result<Vec<Statement>, FormatError> {
     let mut options = Options::new(words, "gendaylit", at);
     let moment = Moment::read(&mut options)?;
@@ -61,7 +61,7 @@ pub(in super::super) fn generate(
             "-G" => measured = pair(Measured::Level)?,
             "-s" | "+s" => has_sun = option == "+s",
             "-w" => {}
-            "-C" => oddities
+            "-C" => diagnostics
                 .note("the colours of a sky of gendaylit (-C) are left out: it is grey", || at.clone()),
             "-y" => year = Some(options.number(option)?.clamp(1.0, 9999.0) as i32),
             "-g" => albedo = options.number(option)?,
@@ -87,7 +87,7 @@ pub(in super::super) fn generate(
     let angles = moment.sun(&site, year).below_zenith();
     let towards = angles.direction();
     if angles.altitude <= 0.0 {
-        oddities
+        diagnostics
             .note("the sun is below the horizon: gendaylit has no sky for that, and so it is black", || {
                 at.clone()
             });

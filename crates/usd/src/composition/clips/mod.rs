@@ -36,7 +36,7 @@ fn own(node: &Node, opinions: &[Opinion], layers: &mut Layers) -> Result<Vec<Cli
     };
     if opinions.iter().any(|o| field(o, "clipAssetPaths", layers).is_some()) {
         let at = layers.all[0].at(0);
-        layers.oddities.not_shown("value clips in the form without sets", || at);
+        layers.diagnostics.not_shown("value clips in the form without sets", || at);
     }
     let mut sets: BTreeMap<Text, Stated> = BTreeMap::new();
     for opinion in opinions {
@@ -57,7 +57,7 @@ fn own(node: &Node, opinions: &[Opinion], layers: &mut Layers) -> Result<Vec<Cli
                 let at = layers.all[opinion.layer as usize].at(opinion.prim);
                 let what = "value clips need assetPaths with active, or a template with start, end and stride, and a primPath: \
                             they are left out";
-                layers.oddities.note(what, || at);
+                layers.diagnostics.note(what, || at);
             }
         }
     }

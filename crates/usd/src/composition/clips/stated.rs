@@ -136,7 +136,7 @@ impl<'s> Reader<'s, '_, '_, '_, '_> {
                 if step == MAX_REACH {
                     let at = self.layers.all[opinion.layer as usize].at(opinion.prim);
                     let what = "values of clips that are missing in more than 64 clips, or in clips without a manifest";
-                    self.layers.oddities.not_shown(what, || at);
+                    self.layers.diagnostics.not_shown(what, || at);
                     break;
                 }
                 let opened = self.open(set, opinion, names, turn)?;

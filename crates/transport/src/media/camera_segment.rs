@@ -1,13 +1,13 @@
-//! Sight along a ray through media, up to the first surface: fog and smoke, and what they leave of the surface.
+//! Camera segment: a ray through media, up to the first surface: fog and smoke, and what they leave of the surface.
 
 use crate::media::{Media, draws_along};
 use bilux_math::Rgb;
 use bilux_scene::media::mean;
 use bilux_scene::{Ray, Surface, Tracer};
 
-/// Sight along a ray; all of it expected values.
+/// Segment of a camera ray through media; all of it expected values.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sight {
+pub(crate) struct CameraSegment {
     /// The first surface that separates two media, if there is one.
     pub(crate) surface: Option<Surface>,
     /// The fraction of light that comes from there, or from beyond all media.
@@ -20,7 +20,7 @@ pub(crate) struct Sight {
     distance: f32,
 }
 
-impl Sight {
+impl CameraSegment {
     /// The share of what is seen that media show, in air and behind a surface; the surface has the rest. What is absorbed is not seen.
     pub(crate) fn shares(&self) -> [f32; 2] {
         let [air, inside] = self.shown;
@@ -48,7 +48,7 @@ impl Sight {
     }
 }
 
-impl Sight {
+impl CameraSegment {
     /// Looks along a ray of unit direction that begins in these media, given the first surface along it. Afterwards they are those on the side
     /// that the ray comes from. `each` gets the objects whose media are on the way, with the share that each hides, 0..=1.
     ///
@@ -59,9 +59,9 @@ impl Sight {
         ray: &Ray,
         first: Option<Surface>,
         mut each: impl FnMut(u32, f32),
-    ) -> Sight {
+    ) -> CameraSegment {
         let (scene, mut draws) = (tracer.scene, draws_along(ray, 0));
-        let mut sight = Sight {
+        let mut sight = CameraSegment {
             surface: None,
             transmittance: Rgb::WHITE,
             albedo: Rgb::BLACK,
@@ -82,6 +82,6 @@ impl Sight {
             sight.distance += passed * (seen.distance + seen.shown * begin);
             sight.transmittance *= seen.transmittance;
         });
-        Sight { surface, ..sight }
+        CameraSegment { surface, ..sight }
     }
 }

@@ -4,7 +4,7 @@ use bilux_math::Vec3;
 
 /// A vertex, as far as lengths need it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
+pub(crate) struct PathPoint {
     pub(crate) p: Vec3,
     /// The direction that the path came from, a unit vector.
     pub(crate) wo: Vec3,
@@ -16,25 +16,25 @@ pub(crate) struct Place {
 
 /// A path from its start to its last vertex.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Way {
+pub(crate) struct OpticalPath {
     /// Optical length, in metres; infinite if the path comes from infinity.
     length: f64,
     p: Vec3,
     /// The index of refraction on the side that it came from, over that around its start.
     index: f64,
     /// The last vertex, once there is one.
-    last: Option<Place>,
+    last: Option<PathPoint>,
 }
 
-impl Way {
+impl OpticalPath {
     /// A path that starts at a point.
-    pub(crate) fn from(p: Vec3) -> Way {
-        Way { length: 0.0, p, index: 1.0, last: None }
+    pub(crate) fn from(p: Vec3) -> OpticalPath {
+        OpticalPath { length: 0.0, p, index: 1.0, last: None }
     }
 
     /// A path that comes from infinity, through this point.
-    pub(crate) fn from_infinity(p: Vec3) -> Way {
-        Way { length: f64::INFINITY, ..Way::from(p) }
+    pub(crate) fn from_infinity(p: Vec3) -> OpticalPath {
+        OpticalPath { length: f64::INFINITY, ..OpticalPath::from(p) }
     }
 
     /// Optical length so far, in metres.
@@ -45,7 +45,7 @@ impl Way {
     /// The index of refraction of what it goes on through in a direction.
     fn index_towards(&self, direction: Vec3) -> f64 {
         match self.last {
-            Some(Place { wo, n, eta, .. }) if wo.dot(n) * direction.dot(n) < 0.0 => {
+            Some(PathPoint { wo, n, eta, .. }) if wo.dot(n) * direction.dot(n) < 0.0 => {
                 let eta = f64::from(eta);
                 if direction.dot(n) < 0.0 { self.index * eta } else { self.index / eta }
             }
@@ -68,7 +68,7 @@ impl Way {
     }
 
     /// Goes on to its next vertex.
-    pub(crate) fn reach(&mut self, place: Place) {
+    pub(crate) fn reach(&mut self, place: PathPoint) {
         (self.length, self.index) = (self.length_to(place.p), self.index_towards(place.p - self.p));
         (self.p, self.last) = (place.p, Some(place));
     }
@@ -99,8 +99,8 @@ mod tests {
 
     #[test]
     fn glass_counts_by_its_index_on_the_way_in_and_not_after_it() {
-        let mut way = Way::from(Vec3::new(0.0, 0.0, 5.0));
-        let face = |z: f32, n: Vec3| Place { p: Vec3::Z * z, wo: Vec3::Z, n, eta: 1.5 };
+        let mut way = OpticalPath::from(Vec3::new(0.0, 0.0, 5.0));
+        let face = |z: f32, n: Vec3| PathPoint { p: Vec3::Z * z, wo: Vec3::Z, n, eta: 1.5 };
         way.reach(face(3.0, Vec3::Z));
         assert_eq!((way.length(), way.length_to(Vec3::Z * 4.0)), (2.0, 3.0));
         way.reach(face(1.0, -Vec3::Z));

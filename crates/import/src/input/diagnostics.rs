@@ -1,15 +1,15 @@
-//! Oddities of a file, and what it has that the picture does not show, each said once.
+//! Diagnostics of a file, and what it has that the picture does not show, each said once.
 
 use bilux_scene::{SceneBuilder, Span, Warning};
 
-/// Counts oddities by kind, so that a file with a million of them gives one warning.
+/// Counts diagnostics by kind, so that a file with a million of them gives one warning.
 #[derive(Debug, Default)]
-pub struct Oddities {
-    kinds: Vec<Oddity>,
+pub struct Diagnostics {
+    kinds: Vec<Diagnostic>,
 }
 
 #[derive(Debug)]
-struct Oddity {
+struct Diagnostic {
     grade: Grade,
     /// The text that all of this kind share.
     what: String,
@@ -19,14 +19,14 @@ struct Oddity {
     at: Span,
 }
 
-impl Oddity {
+impl Diagnostic {
     /// Whether it stands for all kinds that are not listed.
     fn is_last(&self) -> bool {
         self.what == NOT_LISTED
     }
 }
 
-/// Way in which an oddity is reported.
+/// Way in which a diagnostic is reported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Grade {
     /// By a warning.
@@ -48,10 +48,10 @@ const NOT_LISTED: &str = "further faults from here on are not listed";
 /// The number of names in a message about what is not shown.
 const LISTED: usize = 12;
 
-impl Oddities {
-    /// Merges the oddities of a later part of the file, which begins after this many lines.
-    pub fn append(&mut self, part: Oddities, lines: u32) {
-        for Oddity { grade, what, first, count, mut at } in part.kinds {
+impl Diagnostics {
+    /// Merges the diagnostics of a later part of the file, which begins after this many lines.
+    pub fn append(&mut self, part: Diagnostics, lines: u32) {
+        for Diagnostic { grade, what, first, count, mut at } in part.kinds {
             at.line = at.line.saturating_add(lines);
             if let Some(new) = self.count(grade, &what, count) {
                 new.at = at;
@@ -69,7 +69,7 @@ impl Oddities {
         }
     }
 
-    /// Counts one of a kind as [`Oddities::note`] does, with text about the first, which precedes the common text.
+    /// Counts one of a kind as [`Diagnostics::note`] does, with text about the first, which precedes the common text.
     pub fn note_first(&mut self, what: &str, first: impl FnOnce() -> String, at: impl FnOnce() -> Span) {
         if let Some(new) = self.count(Grade::Fault, what, 1) {
             new.at = at();
@@ -103,7 +103,7 @@ impl Oddities {
 
     /// Adds to the count of a kind. Returns the kind if it is new, which then needs its place in the file. (The functions above
     /// are compiled for each closure that says the place, so they do nothing but call it.)
-    fn count(&mut self, grade: Grade, what: &str, count: u64) -> Option<&mut Oddity> {
+    fn count(&mut self, grade: Grade, what: &str, count: u64) -> Option<&mut Diagnostic> {
         if let Some(kind) = self.kinds.iter_mut().find(|kind| kind.grade == grade && kind.what == what) {
             kind.count += count;
             return None;
@@ -113,7 +113,8 @@ impl Oddities {
             MAX_KINDS => NOT_LISTED,
             _ => return None,
         };
-        let new = Oddity { grade, what: what.to_owned(), first: String::new(), count, at: Span::default() };
+        let new =
+            Diagnostic { grade, what: what.to_owned(), first: String::new(), count, at: Span::default() };
         self.kinds.push(new);
         self.kinds.last_mut()
     }
@@ -121,7 +122,7 @@ impl Oddities {
     /// Converts them to warnings and notes, each with its count and the location of the first.
     pub fn into_warnings(mut self, scene: &mut SceneBuilder) {
         for grade in [Grade::NotShown, Grade::NotUsed] {
-            let all: Vec<&Oddity> = self.kinds.iter().filter(|kind| kind.grade == grade).collect();
+            let all: Vec<&Diagnostic> = self.kinds.iter().filter(|kind| kind.grade == grade).collect();
             let Some(first) = all.first() else { continue };
             let names: Vec<&str> = all.iter().map(|kind| &*kind.what).take(LISTED).collect();
             let more = match all.len() - names.len() {
@@ -134,7 +135,7 @@ impl Oddities {
         }
         self.kinds.retain(|kind| matches!(kind.grade, Grade::Fault | Grade::Remark));
         self.kinds.sort_by_key(|kind| (kind.at.line, kind.at.column));
-        for Oddity { grade, what, first, count, at } in self.kinds {
+        for Diagnostic { grade, what, first, count, at } in self.kinds {
             let times =
                 if count > 1 { format!(" ({count} times; this is the first)") } else { String::new() };
             grade.report(format!("{first}{what}{times}"), at, scene);
