@@ -189,7 +189,7 @@ fn light_in_fog_is_what_the_closed_form_says() {
             let means = |pictures| (0..u64::from(pictures)).map(found).collect();
             let what = format!("{name}, {sigma_s} of {sigma_t}");
             let numbers = |means: &Vec<f64>| <[f64; 2]>::from(estimate(means)).to_vec();
-            let found = SUITE.numbers(&what, "mean and error of pictures", effort(16, 256), means, numbers);
+            let found = SUITE.numbers(&what, "mean and error of pictures", effort(16, 400), means, numbers);
             assert_is(&what, (found[0], found[1]), wanted, effort(0.05, 0.01) * wanted);
         }
     }
