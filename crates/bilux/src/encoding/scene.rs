@@ -49,7 +49,7 @@ impl Coded for Object {
             self.instanced.write(to);
             self.category.write(to);
         }
-        // What identifies a picture stays what it was before there were others.
+        // Full visibility is left out, so that older fingerprints, made before objects had one, still agree.
         if !to.only_what_is_seen || self.visibility != Visibility::Full {
             self.visibility.write(to);
         }

@@ -106,7 +106,7 @@ impl<'a> Lexer<'a> {
     }
 }
 
-/// A number; what is none (`1.#QNAN`) is not finite, which those who use it find.
+/// Number that a word states; NaN if it states none (`1.#QNAN`), which users of the number refuse.
 fn number(word: &[u8]) -> f64 {
     let text = std::str::from_utf8(word).unwrap_or_default();
     text.parse().or_else(|_| text.replace(['D', 'd'], "e").parse()).unwrap_or(f64::NAN)

@@ -317,7 +317,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
         straight.samples(context, (light, surface), self.walk.ray.direction.into())
     }
 
-    /// The walk as it was before its last ray, if that has equiangular points.
+    /// State of the walk before its last ray, if that ray has equiangular points.
     pub(super) fn equiangular_walk(&self) -> Option<Walk> {
         self.before.as_deref().map(|before| before.walk)
     }

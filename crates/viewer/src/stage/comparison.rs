@@ -1,4 +1,4 @@
-//! The picture that the picture is compared with.
+//! Reference with which the viewer compares its picture.
 
 use super::show::{FOR_DENOISERS, Shown};
 use super::steps::{Interruptible, STEP};

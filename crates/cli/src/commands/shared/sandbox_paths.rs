@@ -34,7 +34,7 @@ impl SandboxPaths {
         match (leads_out(file), file.canonicalize()) {
             (true, _) => self.outside.push(file.to_owned()),
             (false, Ok(target)) => self.read.push(target),
-            // Whoever opens it says that it is not there.
+            // A file that is missing is reported when it is opened.
             (false, Err(_)) => {}
         }
         self
