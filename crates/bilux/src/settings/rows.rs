@@ -4,13 +4,26 @@ use super::view::OF_CAMERA;
 use bilux_math::registry::{Entry, Parameter, ParameterKind, choice, integer};
 use bilux_transport::MAX_DEPTH;
 
-/// A setting, and what of a picture depends on it.
+/// A setting, what of a picture depends on it, and how the command line calls it.
 #[derive(Clone, Copy, Debug)]
 pub struct SettingRow {
     /// Name, values and default.
     pub parameter: Parameter,
     /// Part of a picture that depends on it.
     pub effect: Effect,
+    /// Option of `bilux render` that sets it; `None` if only `--set` does.
+    pub option: Option<&'static str>,
+}
+
+impl SettingRow {
+    /// Row of the setting of this name; `None` if there is none in [`RENDER`].
+    pub fn named(key: &str) -> Option<&'static SettingRow> {
+        ROWS.iter().find(|row| row.parameter.name == key)
+    }
+
+    const fn by(self, option: &'static str) -> SettingRow {
+        SettingRow { option: Some(option), ..self }
+    }
 }
 
 /// Part of a picture that depends on a setting. Fingerprints, checkpoints and sessions have to agree with it.
@@ -36,7 +49,7 @@ use Effect::{Building, Count, Display, Frames, Samples, Scene, Work};
 impl Effect {
     /// Effect of the setting of this name; `None` if there is none in [`RENDER`].
     pub fn of(key: &str) -> Option<Effect> {
-        ROWS.iter().find(|row| row.parameter.name == key).map(|row| row.effect)
+        SettingRow::named(key).map(|row| row.effect)
     }
 }
 
@@ -60,10 +73,10 @@ const PARAMETERS: [Parameter; ROWS.len()] = {
 
 /// The rows of [`RENDER`], each with its effect.
 pub const ROWS: &[SettingRow] = &[
-    row(Samples, text("integrator", "the light-transport algorithm", "auto")),
-    row(Building, text("accel", "the acceleration structure for ray queries", "auto")),
-    row(Samples, text("size", "width and height of the picture, as WxH", "512x512")),
-    row(Count, integer("spp", "samples per pixel; 0 for the integrator's own choice", 0, 1 << 31, "0")),
+    row(Samples, text("integrator", "the light-transport algorithm", "auto")).by("--integrator"),
+    row(Building, text("accel", "the acceleration structure for ray queries", "auto")).by("--accel"),
+    row(Samples, text("size", "width and height of the picture, as WxH", "512x512")).by("--size"),
+    row(Count, integer("spp", "samples per pixel; 0 for the integrator's own choice", 0, 1 << 31, "0")).by("--spp"),
     row(
         Count,
         number(
@@ -74,7 +87,7 @@ pub const ROWS: &[SettingRow] = &[
             10.0,
             "0",
         ),
-    ),
+    ).by("--noise"),
     row(
         Count,
         number(
@@ -85,7 +98,7 @@ pub const ROWS: &[SettingRow] = &[
             1e9,
             "0",
         ),
-    ),
+    ).by("--time-limit"),
     row(
         Samples,
         integer(
@@ -95,7 +108,7 @@ pub const ROWS: &[SettingRow] = &[
             i64::MAX,
             "0",
         ),
-    ),
+    ).by("--seed"),
     row(
         Samples,
         integer(
@@ -105,9 +118,9 @@ pub const ROWS: &[SettingRow] = &[
             MAX_DEPTH as i64,
             "16",
         ),
-    ),
-    row(Work, integer("threads", "number of threads; 0 uses all cores", 0, 4096, "0")),
-    row(Samples, text("camera", "name or number of the camera", "0")),
+    ).by("--max-depth"),
+    row(Work, integer("threads", "number of threads; 0 uses all cores", 0, 4096, "0")).by("--threads"),
+    row(Samples, text("camera", "name or number of the camera", "0")).by("--camera"),
     row(
         Scene,
         text(
@@ -115,7 +128,7 @@ pub const ROWS: &[SettingRow] = &[
             "move the camera to this point, as X,Y,Z in metres; camera leaves it where it is",
             OF_CAMERA,
         ),
-    ),
+    ).by("--eye"),
     row(
         Scene,
         text(
@@ -123,14 +136,14 @@ pub const ROWS: &[SettingRow] = &[
             "turn the camera to this point, as X,Y,Z in metres; camera leaves it as it is",
             OF_CAMERA,
         ),
-    ),
-    row(Scene, number("zoom", "magnify the picture by this factor", "", 1e-3, 1e3, "1")),
-    row(Scene, choice("ground", "what a model without a camera and lights stands on", GROUNDS, "auto")),
+    ).by("--look-at"),
+    row(Scene, number("zoom", "magnify the picture by this factor", "", 1e-3, 1e3, "1")).by("--zoom"),
+    row(Scene, choice("ground", "what a model without a camera and lights stands on", GROUNDS, "auto")).by("--ground"),
     // Deeper paths too, unless `max_depth` is said.
     row(
         Scene,
         number("fog", "fog around everything, and how far one sees in it; 0 is none", "m", 0.0, 1e6, "0"),
-    ),
+    ).by("--fog"),
     row(
         Scene,
         text(
@@ -139,15 +152,15 @@ pub const ROWS: &[SettingRow] = &[
              AZ,EL",
             "26.5,17.8",
         ),
-    ),
+    ).by("--orbit"),
     row(
         Scene,
         choice("up", "the model's up axis; auto infers it from the format and the shape", AXES, "auto"),
-    ),
+    ).by("--up"),
     row(
         Scene,
         choice("front", "the model's front axis; auto infers it from the format and the shape", AXES, "auto"),
-    ),
+    ).by("--front"),
     row(
         Scene,
         number(
@@ -158,8 +171,8 @@ pub const ROWS: &[SettingRow] = &[
             10_000.0,
             "45",
         ),
-    ),
-    row(Samples, number("time", "the time that the picture shows", "s", -1e9, 1e9, "0")),
+    ).by("--focal"),
+    row(Samples, number("time", "the time that the picture shows", "s", -1e9, 1e9, "0")).by("--at"),
     row(Samples, number("shutter", "how long the shutter is open", "s", 0.0, 1e9, "0")),
     row(
         Samples,
@@ -195,7 +208,7 @@ pub const ROWS: &[SettingRow] = &[
             64.0,
             "0",
         ),
-    ),
+    ).by("--exposure"),
     row(
         Display,
         Parameter {
@@ -214,7 +227,7 @@ pub const ROWS: &[SettingRow] = &[
             "the background: surroundings, transparent, or a colour (white, #rrggbb or R,G,B)",
             "surroundings",
         ),
-    ),
+    ).by("--background"),
     row(
         Display,
         text(
@@ -223,7 +236,7 @@ pub const ROWS: &[SettingRow] = &[
              all of it is unlit, else none",
             "auto",
         ),
-    ),
+    ).by("--tonemap"),
     row(
         Display,
         choice(
@@ -232,7 +245,7 @@ pub const ROWS: &[SettingRow] = &[
             DENOISE,
             "display",
         ),
-    ),
+    ).by("--denoise"),
     row(
         Display,
         choice("transfer", "the transfer function from linear light to bytes", &["srgb", "linear"], "srgb"),
@@ -250,7 +263,7 @@ pub const ROWS: &[SettingRow] = &[
             &["auto", "fast", "balanced", "best"],
             "auto",
         ),
-    ),
+    ).by("--build"),
     row(
         Building,
         choice(
@@ -260,7 +273,7 @@ pub const ROWS: &[SettingRow] = &[
             "auto",
         ),
     ),
-    row(Building, choice("bsp_split", "how bsp chooses its planes", &["mean", "fuchs"], "mean")),
+    row(Building, choice("bsp_split", "how bsp chooses its planes", &["mean", "fuchs"], "mean")).by("--bsp-split"),
     row(
         Building,
         choice(
@@ -269,13 +282,13 @@ pub const ROWS: &[SettingRow] = &[
             &["polygons", "objects"],
             "polygons",
         ),
-    ),
+    ).by("--bsp-group"),
     row(Building, switch("early_out", "end a traversal at the first hit that no closer hit can replace")),
     row(Building, switch("cull_by_partition", "reject back faces by the side of their partition plane")),
 ];
 
 const fn row(effect: Effect, parameter: Parameter) -> SettingRow {
-    SettingRow { parameter, effect }
+    SettingRow { parameter, effect, option: None }
 }
 
 const fn text(name: &'static str, summary: &'static str, default: &'static str) -> Parameter {
