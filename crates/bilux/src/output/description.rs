@@ -2,24 +2,9 @@
 //! and its view. Nothing that differs from one run to the next: no date, no time, no threads.
 
 pub use crate::output::metadata::{FINGERPRINT, SETTINGS, SOFTWARE, is_handed_on};
-use crate::settings::{RENDER, Settings};
+use crate::settings::{Effect, RENDER, Settings};
 use bilux_math::Mat4;
 use bilux_scene::{Parameters, Value};
-
-/// Settings that change no picture with a fixed number of samples.
-const WITHOUT_EFFECT: [&str; 11] = [
-    "accel",
-    "build",
-    "cpu",
-    "bsp_split",
-    "bsp_group",
-    "early_out",
-    "cull_by_partition",
-    "threads",
-    "fps",
-    "noise",
-    "time_limit",
-];
 
 /// A matrix for row vectors, row by row, as OpenEXR stores it.
 pub(crate) fn row_vectors(matrix: &Mat4) -> String {
@@ -49,11 +34,19 @@ pub(crate) fn options(settings: &Settings, spp: u32, denoiser: Option<&str>) -> 
     }
     // Whoever gave them in another order gets the same text.
     all.0.sort_by(|(a, ..), (b, ..)| a.cmp(b));
-    let is_needed = |key: &str| !WITHOUT_EFFECT.contains(&key);
-    let set = all.0.iter().filter(|(key, ..)| is_needed(key));
+    let set = all.0.iter().filter(|(key, ..)| changes_picture(key));
     set.map(|(key, value, _)| format!("--set {}", quoted(&format!("{key}={}", text(value)))))
         .collect::<Vec<_>>()
         .join(" ")
+}
+
+/// True if a picture with a fixed number of samples depends on this setting, or on this parameter of an integrator.
+fn changes_picture(key: &str) -> bool {
+    match Effect::of(key) {
+        Some(Effect::Count) => key == "spp",
+        Some(Effect::Frames | Effect::Work | Effect::Building) => false,
+        Some(Effect::Samples | Effect::Scene | Effect::Display) | None => true,
+    }
 }
 
 /// A value as `--set` reads it.

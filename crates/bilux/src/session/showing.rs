@@ -6,22 +6,8 @@ use bilux_transport::RenderSettings;
 
 /// The picture with settings that change no sample, and the number of samples ([`Settings::takes_samples_of`]).
 pub(super) fn showing(job: &Job, settings: &Settings) -> Job {
-    let Settings { spp, threads, fps, exposure, states_exposure, auto_exposure, .. } = *settings;
-    let Settings { background, linear_transfer, .. } = *settings;
-    let (tonemap, denoise) = (settings.tonemap.clone(), settings.denoise.clone());
-    let settings = Settings {
-        spp,
-        threads,
-        fps,
-        exposure,
-        states_exposure,
-        auto_exposure,
-        background,
-        linear_transfer,
-        tonemap,
-        denoise,
-        ..job.settings.clone()
-    };
+    let settings = settings.with_samples_of(&job.settings);
+    let (spp, threads) = (settings.spp, settings.threads);
     let render = RenderSettings { threads, spp, samples: 0..spp, ..job.render.clone() };
     Job { settings, render, ..job.clone() }
 }

@@ -7,6 +7,7 @@ mod depth;
 mod idle;
 mod memory;
 mod names;
+mod rows;
 mod same_samples;
 mod shutter;
 mod size;
@@ -20,195 +21,18 @@ use crate::preparation::presets::Studio;
 use accel::accel_choice;
 pub use background::Background;
 use background::background;
-use bilux_math::registry::{Entry, Parameter, ParameterKind, choice, integer};
 use bilux_scene::{AccelChoice, Parameters, Reader, SceneBuilder, SceneError, Span, Spec, Value};
+use bilux_transport::Stop;
 use bilux_transport::integrators::{INTEGRATORS, IntegratorEntry};
-use bilux_transport::{MAX_DEPTH, Stop};
 use names::{find_integrator, tone_curve};
+pub use rows::{DENOISE, Effect, RENDER, ROWS, SettingRow};
 pub(crate) use shutter::shutter_of;
 use size::calibrated_size;
 pub use size::{parse_size, size_error};
 use std::time::Duration;
 pub use studio::parse_orbit;
 use studio::{as_list_text, studio};
-use view::OF_CAMERA;
 pub use view::View;
-
-/// The values of the setting `denoise`.
-pub const DENOISE: &[&str] = &["display", "auto", "oidn", "builtin", "off"];
-
-/// The settings that `[render]` and `--set` accept, besides the integrator's parameters.
-pub const RENDER: Entry = Entry {
-    name: "render",
-    summary: "how the picture is made",
-    source: "",
-    parameters: &[
-        text("integrator", "the light-transport algorithm", "auto"),
-        text("accel", "the acceleration structure for ray queries", "auto"),
-        text("size", "width and height of the picture, as WxH", "512x512"),
-        integer("spp", "samples per pixel; 0 for the integrator's own choice", 0, 1 << 31, "0"),
-        number(
-            "noise",
-            "stop when the noise is, on average, at most this fraction of the light; 0 for no limit",
-            "",
-            0.0,
-            10.0,
-            "0",
-        ),
-        number(
-            "time_limit",
-            "finish within this time, including reading and denoising; 0 for no limit",
-            "s",
-            0.0,
-            1e9,
-            "0",
-        ),
-        integer(
-            "seed",
-            "the seed of the random numbers; a different seed gives different noise",
-            0,
-            i64::MAX,
-            "0",
-        ),
-        integer(
-            "max_depth",
-            "maximum number of scattering events after the camera; those inside skin and milk do not count; 0 is emission only; 100 with `fog`, if nothing is said",
-            0,
-            MAX_DEPTH as i64,
-            "16",
-        ),
-        integer("threads", "number of threads; 0 uses all cores", 0, 4096, "0"),
-        text("camera", "name or number of the camera", "0"),
-        text(
-            "eye",
-            "move the camera to this point, as X,Y,Z in metres; camera leaves it where it is",
-            OF_CAMERA,
-        ),
-        text(
-            "look_at",
-            "turn the camera to this point, as X,Y,Z in metres; camera leaves it as it is",
-            OF_CAMERA,
-        ),
-        number("zoom", "magnify the picture by this factor", "", 1e-3, 1e3, "1"),
-        choice("ground", "what a model without a camera and lights stands on", GROUNDS, "auto"),
-        number("fog", "fog around everything, and how far one sees in it; 0 is none", "m", 0.0, 1e6, "0"),
-        text(
-            "orbit",
-            "the position of the studio's camera: degrees to the right of the model's front and degrees above it, as \
-             AZ,EL",
-            "26.5,17.8",
-        ),
-        choice("up", "the model's up axis; auto infers it from the format and the shape", AXES, "auto"),
-        choice("front", "the model's front axis; auto infers it from the format and the shape", AXES, "auto"),
-        number(
-            "focal",
-            "focal length of the studio's camera, for a picture 24 mm high",
-            "mm",
-            1.0,
-            10_000.0,
-            "45",
-        ),
-        number("time", "the time that the picture shows", "s", -1e9, 1e9, "0"),
-        number("shutter", "how long the shutter is open", "s", 0.0, 1e9, "0"),
-        number(
-            "readout",
-            "how much later a rolling shutter exposes the last row than the first",
-            "s",
-            0.0,
-            1e9,
-            "0",
-        ),
-        number("fps", "frames per second, for --frames", "1/s", 1e-6, 1e6, "24"),
-        text("filter", "the pixel reconstruction filter", "box"),
-        choice(
-            "texture_filter",
-            "how image textures are filtered: over a footprint of half a pixel, for less noise, or not at all",
-            &["footprint", "none"],
-            "footprint",
-        ),
-        choice("pixel_anchor", "where pixel (0, 0) is sampled", &["centre", "corner"], "centre"),
-        number(
-            "exposure",
-            "brightens display formats by this many stops (powers of two); if it is not given, a picture by the light of a \
-             glTF or OBJ file, where that is too bright or too dim for a display, is exposed to show it",
-            "EV",
-            -64.0,
-            64.0,
-            "0",
-        ),
-        Parameter {
-            name: "auto_exposure",
-            summary: "also expose display formats automatically, to the brightness of a photograph",
-            unit: "",
-            kind: ParameterKind::Bool,
-            default: "false",
-        },
-        text(
-            "background",
-            "the background: surroundings, transparent, or a colour (white, #rrggbb or R,G,B)",
-            "surroundings",
-        ),
-        text(
-            "tonemap",
-            "the tone-mapping curve for display formats; auto is neutral if the studio lights the model, unless \
-             all of it is unlit, else none",
-            "auto",
-        ),
-        choice(
-            "denoise",
-            "the denoiser; display uses the best one for display formats when noise or time ends the render",
-            DENOISE,
-            "display",
-        ),
-        choice("transfer", "the transfer function from linear light to bytes", &["srgb", "linear"], "srgb"),
-        choice("culling", "which faces of closed, opaque meshes to cull", &["none", "back"], "none"),
-        choice(
-            "build",
-            "how much time building the tree may take; auto is best for bvh8 from 64 samples per triangle on, else \
-             balanced",
-            &["auto", "fast", "balanced", "best"],
-            "auto",
-        ),
-        choice(
-            "cpu",
-            "the instruction set that kernels may use",
-            &["auto", "baseline", "sse4.2", "avx2", "avx512"],
-            "auto",
-        ),
-        choice("bsp_split", "how bsp chooses its planes", &["mean", "fuchs"], "mean"),
-        choice(
-            "bsp_group",
-            "whether bsp groups polygons or whole objects",
-            &["polygons", "objects"],
-            "polygons",
-        ),
-        switch("early_out", "end a traversal at the first hit that no closer hit can replace"),
-        switch("cull_by_partition", "reject back faces by the side of their partition plane"),
-    ],
-};
-
-const fn text(name: &'static str, summary: &'static str, default: &'static str) -> Parameter {
-    Parameter { name, summary, unit: "", kind: ParameterKind::Text, default }
-}
-
-const fn switch(name: &'static str, summary: &'static str) -> Parameter {
-    Parameter { name, summary, unit: "", kind: ParameterKind::Bool, default: "true" }
-}
-
-const fn number(
-    name: &'static str,
-    summary: &'static str,
-    unit: &'static str,
-    min: f64,
-    max: f64,
-    default: &'static str,
-) -> Parameter {
-    Parameter { name, summary, unit, kind: ParameterKind::Number { min, max }, default }
-}
-
-const AXES: &[&str] = &["auto", "x", "y", "z", "-x", "-y", "-z"];
-
-const GROUNDS: &[&str] = &["auto", "shadow", "mirror", "none"];
 
 /// Checked settings.
 #[derive(Clone, Debug)]

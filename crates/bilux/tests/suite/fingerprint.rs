@@ -10,7 +10,7 @@ use bilux::math::{Rgb, Transform, Vec2, Vec3};
 use bilux::prelude::*;
 use bilux::scene::cameras::CameraSpec;
 use bilux::scene::texture::{Channel, Filter, Texture, UvTransform, Wrap};
-use bilux::settings::RENDER;
+use bilux::settings::{Effect, ROWS, SettingRow};
 use bilux::transport::integrators::INTEGRATORS;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -142,65 +142,33 @@ fn every_change_of_a_scene_changes_the_fingerprint() {
     assert_eq!(seen[&fingerprint(&renamed, &settings)], "nothing");
 }
 
-/// Effect of a setting on the samples.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Effect {
-    /// May change each of the samples.
-    Changes,
-    /// The samples are the same bit for bit, or are other samples of the same picture.
-    Keeps,
-}
-use Effect::{Changes, Keeps};
-
-/// Every row of [`RENDER`] with a value that is not its default.
-const SETTINGS: &[(&str, &str, Effect)] = &[
-    ("integrator", "path", Changes),
-    ("accel", "brute", Keeps),
-    ("size", "9x8", Changes),
-    ("spp", "3", Keeps),
-    ("noise", "0.5", Keeps),
-    ("time_limit", "5", Keeps),
-    ("seed", "7", Changes),
-    ("max_depth", "3", Changes),
-    ("threads", "1", Keeps),
-    ("camera", "b", Changes),
-    ("eye", "0.5,1,4", Changes),
-    ("look_at", "0,0.5,0", Changes),
-    ("zoom", "2", Changes),
-    ("ground", "none", Changes),
-    ("fog", "20", Changes),
-    ("orbit", "40,10", Changes),
-    ("up", "z", Changes),
-    ("front", "x", Changes),
-    ("focal", "80", Changes),
-    ("time", "0.5", Changes),
-    ("shutter", "0.5", Changes),
-    ("readout", "0.5", Changes),
-    ("fps", "12", Keeps),
-    ("filter", "tent", Changes),
-    ("texture_filter", "none", Changes),
-    ("pixel_anchor", "corner", Changes),
-    ("exposure", "1", Keeps),
-    ("auto_exposure", "true", Keeps),
-    ("background", "transparent", Changes),
-    ("tonemap", "aces", Keeps),
-    ("denoise", "off", Keeps),
-    ("transfer", "linear", Keeps),
-    ("culling", "back", Changes),
-    ("build", "fast", Keeps),
-    ("cpu", "baseline", Keeps),
-    ("bsp_split", "fuchs", Keeps),
-    ("bsp_group", "objects", Keeps),
-    ("early_out", "false", Keeps),
-    ("cull_by_partition", "false", Keeps),
+/// Values of the settings that take any text, and of the ground, which `auto` makes a shadow for a model alone. None is the
+/// default.
+const VALUES: &[(&str, &str)] = &[
+    ("integrator", "path"),
+    ("accel", "brute"),
+    ("size", "9x8"),
+    ("camera", "b"),
+    ("eye", "0.5,1,4"),
+    ("look_at", "0,0.5,0"),
+    ("ground", "none"),
+    ("orbit", "40,10"),
+    ("filter", "tent"),
+    ("background", "transparent"),
+    ("tonemap", "aces"),
 ];
 
-fn value(parameter: &Parameter, text: &str) -> Value {
-    match parameter.kind {
-        ParameterKind::Bool => Value::Bool(text == "true"),
-        ParameterKind::Integer { .. } => Value::Integer(text.parse().unwrap()),
-        ParameterKind::Number { .. } => Value::from(text.parse::<f32>().unwrap()),
-        _ => Value::Text(text.to_owned()),
+/// A value of a setting that is not its default.
+fn another(parameter: &Parameter) -> Value {
+    match VALUES.iter().find(|(key, _)| *key == parameter.name) {
+        Some((key, text)) => {
+            assert_ne!(*text, parameter.default, "{key}");
+            Value::from(*text)
+        }
+        None if matches!(parameter.kind, ParameterKind::Text) => {
+            panic!("give another value of '{}' here", parameter.name)
+        }
+        None => other(parameter),
     }
 }
 
@@ -213,27 +181,68 @@ fn job_with(key: &str, value: Option<Value>) -> Job {
     }
     let mut settings = Parameters::default();
     settings.set("size", "8x8");
+    // Fog would otherwise choose another depth.
+    settings.set("max_depth", Value::Integer(5));
     if let Some(value) = value {
         settings.set(key, value);
     }
     Job::new(&scene, &settings).unwrap_or_else(|error| panic!("{key}: {error}"))
 }
 
+/// Fingerprints, checkpoints and sessions read what the effects of the rows say that they read.
 #[test]
-fn every_setting_is_known_to_change_samples_or_to_keep_them() {
-    for parameter in RENDER.parameters {
-        let Some((key, text, effect)) = SETTINGS.iter().find(|(key, ..)| *key == parameter.name) else {
-            panic!("say in this table whether '{}' changes samples", parameter.name);
-        };
-        assert_ne!(*text, parameter.default, "{key}");
-        let [plain, other] = [job_with(key, None), job_with(key, Some(value(parameter, text)))];
-        let of = |is_another: bool| if is_another { Changes } else { Keeps };
-        assert_eq!(of(plain.fingerprint() != other.fingerprint()), *effect, "{key} = {text}");
-        // Checkpoints keep a list of their own, which names what differs: the same settings count there.
-        let differences = Identity::of(&plain).differences(&Identity::of(&other));
-        assert_eq!(of(!differences.is_empty()), *effect, "{key} = {text} in a checkpoint: {differences:?}");
+fn every_setting_has_the_effect_that_its_row_says() {
+    let mut seen = HashMap::new();
+    for row in ROWS {
+        let key = row.parameter.name;
+        let [plain, changed] = [None, Some(another(&row.parameter))].map(|value| job_with(key, value));
+        let is_other_picture = plain.fingerprint() != changed.fingerprint();
+        assert_eq!(is_other_picture, matches!(row.effect, Effect::Samples | Effect::Scene), "{key}");
+        // The changed settings alone, with the scene as it was.
+        let of_setting = fingerprint(plain.completed_scene(), changed.settings());
+        assert_eq!(of_setting != plain.fingerprint(), row.effect == Effect::Samples, "{key} itself");
+        if is_other_picture && let Some(other) = seen.insert(changed.fingerprint().to_owned(), key) {
+            panic!("{key} and {other} have one fingerprint");
+        }
+        // Checkpoints keep a list of their own, which names what differs.
+        let differences = Identity::of(&plain).differences(&Identity::of(&changed));
+        let is_of_setting = |name: &String| !name.starts_with("the scene");
+        assert_eq!(!differences.is_empty(), is_other_picture, "{key} in a checkpoint: {differences:?}");
+        assert_eq!(
+            differences.iter().any(is_of_setting),
+            row.effect == Effect::Samples,
+            "{key} in a checkpoint: {differences:?}"
+        );
+        // Samples of a session are kept unless the scene is another one, or is built anew.
+        let keeps = matches!(row.effect, Effect::Count | Effect::Frames | Effect::Display | Effect::Work);
+        assert_eq!(changed.settings().takes_samples_of(plain.settings()), keeps, "{key} in a session");
     }
-    assert!(SETTINGS.iter().all(|(key, ..)| RENDER.parameters.iter().any(|p| p.name == *key)));
+}
+
+/// Samples are the same bit for bit whatever a setting says that has another effect.
+#[test]
+fn settings_that_keep_the_samples_keep_them() {
+    let mut scene = bilux::generate(&Spec::new("", "cornell")).unwrap();
+    let ball = Mesh::sphere(Vec3::new(0.0, 0.3, 0.0), 0.2, 12);
+    scene.objects.push(Object::new("ball", Arc::new(ball), 0));
+    let wanted = [Effect::Frames, Effect::Display, Effect::Work, Effect::Building];
+    // The options of the paper's tree do something in it, and where faces are culled.
+    for base in [&[("accel", "auto")][..], &[("accel", "bsp"), ("culling", "back")]] {
+        let film = |row: Option<&SettingRow>| {
+            let mut settings = Parameters::default();
+            settings.set("integrator", "path");
+            base.iter().for_each(|(key, value)| settings.set(key, *value));
+            if let Some(row) = row {
+                settings.set(row.parameter.name, another(&row.parameter));
+            }
+            let job = Job::new(&scene, JobRequest::from(&settings).size(12, 10).spp(2)).unwrap();
+            job.render(&Quiet).unwrap().rendered.film
+        };
+        let plain = film(None);
+        for row in ROWS.iter().filter(|row| wanted.contains(&row.effect)) {
+            assert!(film(Some(row)) == plain, "{} with {base:?}", row.parameter.name);
+        }
+    }
 }
 
 /// A value that is not the parameter's default.
@@ -244,11 +253,14 @@ fn other(parameter: &Parameter) -> Value {
             Value::Integer(min + 2)
         }
         ParameterKind::Integer { min, .. } => Value::Integer(min + 1),
-        ParameterKind::Number { min, max } => Value::Number(0.3 * min + 0.7 * min.max(max.min(min + 1.0))),
+        ParameterKind::Number { min, max } => {
+            let least = min.max(-1.0);
+            Value::Number(0.3 * least + 0.7 * least.max(max.min(least + 1.0)))
+        }
         ParameterKind::Choice(words) => {
             Value::Text(words.iter().find(|word| **word != parameter.default).unwrap().to_string())
         }
-        kind => panic!("{}: an integrator's parameter of the kind {kind:?}", parameter.name),
+        kind => panic!("{}: a parameter of the kind {kind:?}", parameter.name),
     }
 }
 

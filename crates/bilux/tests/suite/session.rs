@@ -185,6 +185,13 @@ fn an_edit_that_changes_no_sample_keeps_them() {
     let user = settings(&[("spp", Value::Integer(7)), ("transfer", "linear".into())]);
     assert!(finished(&mut session) == fresh(session.scene(), &user));
     assert_eq!(session.samples(), 7);
+    // Who makes the picture again by what it says of itself gets the one that is shown.
+    let mut shown = session.picture().unwrap().unwrap();
+    session.job().describe(&mut shown, session.outcome().unwrap(), None);
+    let said = &shown.metadata[bilux::description::SETTINGS];
+    for part in ["exposure=-2", "tonemap=neutral", "transfer=linear", "spp=7"] {
+        assert!(said.contains(part), "{part} in {said}");
+    }
     assert!(session.apply(Edit::Set("spp".to_owned(), Value::Integer(4))).unwrap(), "fewer than there are");
 }
 

@@ -7,6 +7,7 @@ use crate::arguments::values::Exposure;
 use crate::arguments::{Explain, Render};
 use crate::process::memory;
 use bilux::scene::{Parameters, Value};
+use bilux::settings::SettingRow;
 
 /// The render settings on the command line.
 pub fn render(arguments: &Render) -> anyhow::Result<Parameters> {
@@ -18,43 +19,43 @@ pub fn render(arguments: &Render) -> anyhow::Result<Parameters> {
         Some(Exposure::Stops(stops)) => Some(stops),
         Some(Exposure::Auto) | None => None,
     };
-    let flags = [
-        ("integrator", "--integrator", text(&a.integrator)),
-        ("accel", "--accel", text(&a.accel)),
-        ("build", "--build", text(&a.build)),
-        ("size", "--size", text(&a.size)),
-        ("spp", "--spp", whole(a.spp.map(u64::from))),
-        ("noise", "--noise", number(a.noise)),
-        ("time_limit", "--time-limit", number(a.time_limit)),
-        ("seed", "--seed", whole(a.seed)),
-        ("threads", "--threads", whole(a.threads.map(u64::from))),
-        ("max_depth", "--max-depth", whole(a.max_depth.map(u64::from))),
-        ("camera", "--camera", text(&a.camera)),
-        ("time", "--at", number(a.at)),
-        ("exposure", "--exposure", number(stops)),
-        ("auto_exposure", "--exposure", (a.exposure == Some(Exposure::Auto)).then_some(Value::Bool(true))),
-        ("tonemap", "--tonemap", text(&a.tonemap)),
-        ("denoise", "--denoise", text(&a.denoise)),
-        ("specular", "--specular", text(&a.specular)),
-        ("shadow_rule", "--shadow-rule", text(&a.shadow_rule)),
-        ("bsp_split", "--bsp-split", text(&a.bsp_split)),
-        ("bsp_group", "--bsp-group", text(&a.bsp_group)),
+    let given = [
+        ("integrator", text(&a.integrator)),
+        ("accel", text(&a.accel)),
+        ("build", text(&a.build)),
+        ("size", text(&a.size)),
+        ("spp", whole(a.spp.map(u64::from))),
+        ("noise", number(a.noise)),
+        ("time_limit", number(a.time_limit)),
+        ("seed", whole(a.seed)),
+        ("threads", whole(a.threads.map(u64::from))),
+        ("max_depth", whole(a.max_depth.map(u64::from))),
+        ("camera", text(&a.camera)),
+        ("time", number(a.at)),
+        ("exposure", number(stops)),
+        ("auto_exposure", (a.exposure == Some(Exposure::Auto)).then_some(Value::Bool(true))),
+        ("tonemap", text(&a.tonemap)),
+        ("denoise", text(&a.denoise)),
+        ("specular", text(&a.specular)),
+        ("shadow_rule", text(&a.shadow_rule)),
+        ("bsp_split", text(&a.bsp_split)),
+        ("bsp_group", text(&a.bsp_group)),
     ];
-    let mut parameters = all(flags.into_iter().chain(studio(&a.studio)), &a.set)?;
+    let mut parameters = all(given.into_iter().chain(studio(&a.studio)), &a.set)?;
     bilux::budget::let_limits_decide(&mut parameters);
     Ok(parameters)
 }
 
 /// The settings on the command line of a viewer.
 pub fn serve(arguments: &Serve) -> anyhow::Result<Parameters> {
-    let time = [("time", "--at", arguments.at.map(Value::from))];
+    let time = [("time", arguments.at.map(Value::from))];
     all(time.into_iter().chain(studio(&arguments.studio)), &arguments.set)
 }
 
 /// The settings on the command line that explains a scene.
 pub fn explain(arguments: &Explain) -> anyhow::Result<Parameters> {
     let at = arguments.posed.at;
-    let time = [("time", "--at", (at != 0.0).then(|| Value::from(at)))];
+    let time = [("time", (at != 0.0).then(|| Value::from(at)))];
     let mut parameters = all(time.into_iter().chain(studio(&arguments.studio)), &arguments.set)?;
     if parameters.find("integrator").is_none() {
         // Whatever the scene file says: it is explained by what this one finds.
@@ -63,33 +64,43 @@ pub fn explain(arguments: &Explain) -> anyhow::Result<Parameters> {
     Ok(parameters)
 }
 
-/// A setting, its flag, and its value if it is given.
-type Flag = (&'static str, &'static str, Option<Value>);
+/// A setting, and its value if its option is given.
+type Given = (&'static str, Option<Value>);
+
+/// The option that gives a setting, or a parameter of an integrator.
+fn option_of(key: &str) -> String {
+    match SettingRow::named(key).and_then(|row| row.option) {
+        Some(option) => option.to_owned(),
+        // A word in the place of its number.
+        None if key == "auto_exposure" => "--exposure".to_owned(),
+        None => format!("--{}", key.replace('_', "-")),
+    }
+}
 
 /// The settings of the camera and the studio.
-fn studio(studio: &StudioArguments) -> [Flag; 10] {
+fn studio(studio: &StudioArguments) -> [Given; 10] {
     let text = |t: &Option<String>| t.clone().map(Value::Text);
     let number = |n: Option<f32>| n.map(Value::from);
     [
-        ("eye", "--eye", text(&studio.eye)),
-        ("look_at", "--look-at", text(&studio.look_at)),
-        ("zoom", "--zoom", number(studio.zoom)),
-        ("orbit", "--orbit", text(&studio.orbit)),
-        ("up", "--up", text(&studio.up)),
-        ("front", "--front", text(&studio.front)),
-        ("focal", "--focal", number(studio.focal)),
-        ("ground", "--ground", text(&studio.ground)),
-        ("fog", "--fog", number(studio.fog)),
-        ("background", "--background", text(&studio.background())),
+        ("eye", text(&studio.eye)),
+        ("look_at", text(&studio.look_at)),
+        ("zoom", number(studio.zoom)),
+        ("orbit", text(&studio.orbit)),
+        ("up", text(&studio.up)),
+        ("front", text(&studio.front)),
+        ("focal", number(studio.focal)),
+        ("ground", text(&studio.ground)),
+        ("fog", number(studio.fog)),
+        ("background", text(&studio.background())),
     ]
 }
 
-/// The settings that flags give, and those of `--set`.
-fn all(flags: impl Iterator<Item = Flag>, set: &[String]) -> anyhow::Result<Parameters> {
+/// The settings that options give, and those of `--set`.
+fn all(given: impl Iterator<Item = Given>, set: &[String]) -> anyhow::Result<Parameters> {
     let mut parameters = Parameters::default();
-    for (key, flag, value) in flags {
+    for (key, value) in given {
         if let Some(value) = value {
-            parameters.set_at(key, value, from_flag(flag));
+            parameters.set_at(key, value, from_flag(&option_of(key)));
         }
     }
     for assignment in set {
@@ -104,12 +115,13 @@ fn all(flags: impl Iterator<Item = Flag>, set: &[String]) -> anyhow::Result<Para
 mod tests {
     use super::*;
     use crate::arguments::{Arguments, Command};
-    use clap::Parser;
+    use bilux::settings::{Effect, ROWS};
+    use clap::{CommandFactory, Parser};
 
     /// Each option alone gives its own setting and no other, also where options come in pairs.
     #[test]
     fn every_option_works_without_the_others() {
-        for (option, key, value) in [
+        let options = [
             ("--up=z", "up", Value::from("z")),
             ("--front=-y", "front", Value::from("-y")),
             ("--eye=1,2,3", "eye", Value::from("1,2,3")),
@@ -118,6 +130,7 @@ mod tests {
             ("--zoom=2", "zoom", Value::from(2.0f32)),
             ("--focal=50", "focal", Value::from(50.0f32)),
             ("--ground=shadow", "ground", Value::from("shadow")),
+            ("--fog=20", "fog", Value::from(20.0f32)),
             ("--background=white", "background", Value::from("white")),
             ("--size=4x3", "size", Value::from("4x3")),
             ("--seed=7", "seed", Value::Integer(7)),
@@ -137,14 +150,33 @@ mod tests {
             ("--bsp-split=mean", "bsp_split", Value::from("mean")),
             ("--bsp-group=objects", "bsp_group", Value::from("objects")),
             ("--set=fps=30", "fps", Value::Integer(30)),
-        ] {
+        ];
+        for row in ROWS.iter().filter(|row| row.option.is_some() && row.effect != Effect::Count) {
+            assert!(options.iter().any(|(_, key, _)| *key == row.parameter.name), "{}", row.parameter.name);
+        }
+        for (option, key, value) in options {
             let line = ["bilux", "render", "a.toml", "-o", "a.png", option];
             let Command::Render(arguments) = Arguments::try_parse_from(line).unwrap().command else {
                 panic!("{option}")
             };
-            let given: Vec<(String, Value)> =
-                render(&arguments).unwrap().0.into_iter().map(|(key, value, _)| (key, value)).collect();
-            assert_eq!(given, [(key.to_owned(), value)], "{option}");
+            let given = render(&arguments).unwrap().0;
+            let values: Vec<_> = given.iter().map(|(key, value, _)| (&**key, value)).collect();
+            assert_eq!(values, [(key, &value)], "{option}");
+            let name = option.split('=').next().unwrap();
+            assert!(given[0].2.to_string().contains(name), "{option} is said at {}", given[0].2);
+        }
+    }
+
+    #[test]
+    fn the_options_of_rows_are_all_that_the_command_line_has_for_settings() {
+        let command = Arguments::command();
+        let render = command.find_subcommand("render").unwrap();
+        let has = |option: &str| render.get_arguments().any(|a| a.get_long() == option.strip_prefix("--"));
+        for row in ROWS {
+            let by_name = format!("--{}", row.parameter.name.replace('_', "-"));
+            let option = row.option.or(Some(&*by_name).filter(|option| has(option)));
+            assert_eq!(row.option, option, "an option of its own");
+            assert!(option.is_none_or(has), "{option:?}");
         }
     }
 }

@@ -13,6 +13,7 @@ use bilux::encoding::ContentHash;
 use bilux::formats::Scheme;
 use bilux::pictures::formats::write_atomically;
 use bilux::scene::{Parameters, Value};
+use bilux::settings::Effect;
 use std::collections::BTreeSet;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -21,8 +22,6 @@ use std::path::{Path, PathBuf};
 const FIRST_LINE: &str = "bilux frames 1\n";
 /// The line with the numbers of the frames that are finished.
 const FINISHED: &str = "finished";
-/// Settings that change no picture.
-const FOR_SPEED: [&str; 5] = ["threads", "accel", "build", "bsp_split", "bsp_group"];
 
 /// The frames that are finished, in a file next to them.
 pub struct FinishedFrames<'a> {
@@ -128,7 +127,8 @@ fn journal_path(pattern: &Path) -> PathBuf {
 fn identity(input: &Input, user: &Parameters) -> anyhow::Result<Identity> {
     let mut identity = Identity::default();
     identity.add("version", env!("CARGO_PKG_VERSION"));
-    for (key, value, _) in user.0.iter().filter(|(key, ..)| !FOR_SPEED.contains(&key.as_str())) {
+    let is_for_speed = |key: &str| matches!(Effect::of(key), Some(Effect::Work | Effect::Building));
+    for (key, value, _) in user.0.iter().filter(|(key, ..)| !is_for_speed(key)) {
         identity.add(key, &shown(value));
     }
     let a = input.arguments;
