@@ -72,11 +72,12 @@ const PARAMETERS: [Parameter; ROWS.len()] = {
 };
 
 /// The rows of [`RENDER`], each with its effect.
-pub const ROWS: &[SettingRow] = &[
+pub static ROWS: &[SettingRow] = &[
     row(Samples, text("integrator", "the light-transport algorithm", "auto")).by("--integrator"),
     row(Building, text("accel", "the acceleration structure for ray queries", "auto")).by("--accel"),
     row(Samples, text("size", "width and height of the picture, as WxH", "512x512")).by("--size"),
-    row(Count, integer("spp", "samples per pixel; 0 for the integrator's own choice", 0, 1 << 31, "0")).by("--spp"),
+    row(Count, integer("spp", "samples per pixel; 0 for the integrator's own choice", 0, 1 << 31, "0"))
+        .by("--spp"),
     row(
         Count,
         number(
@@ -87,7 +88,8 @@ pub const ROWS: &[SettingRow] = &[
             10.0,
             "0",
         ),
-    ).by("--noise"),
+    )
+    .by("--noise"),
     row(
         Count,
         number(
@@ -98,7 +100,8 @@ pub const ROWS: &[SettingRow] = &[
             1e9,
             "0",
         ),
-    ).by("--time-limit"),
+    )
+    .by("--time-limit"),
     row(
         Samples,
         integer(
@@ -108,17 +111,20 @@ pub const ROWS: &[SettingRow] = &[
             i64::MAX,
             "0",
         ),
-    ).by("--seed"),
+    )
+    .by("--seed"),
     row(
         Samples,
         integer(
             "max_depth",
-            "maximum number of scattering events after the camera; those inside skin and milk do not count; 0 is emission only; 100 with `fog`, if nothing is said",
+            "maximum number of scattering events after the camera; those inside skin and milk do not \
+             count; 0 is emission only; 100 with `fog`, if nothing is said",
             0,
             MAX_DEPTH as i64,
             "16",
         ),
-    ).by("--max-depth"),
+    )
+    .by("--max-depth"),
     row(Work, integer("threads", "number of threads; 0 uses all cores", 0, 4096, "0")).by("--threads"),
     row(Samples, text("camera", "name or number of the camera", "0")).by("--camera"),
     row(
@@ -128,7 +134,8 @@ pub const ROWS: &[SettingRow] = &[
             "move the camera to this point, as X,Y,Z in metres; camera leaves it where it is",
             OF_CAMERA,
         ),
-    ).by("--eye"),
+    )
+    .by("--eye"),
     row(
         Scene,
         text(
@@ -136,31 +143,37 @@ pub const ROWS: &[SettingRow] = &[
             "turn the camera to this point, as X,Y,Z in metres; camera leaves it as it is",
             OF_CAMERA,
         ),
-    ).by("--look-at"),
+    )
+    .by("--look-at"),
     row(Scene, number("zoom", "magnify the picture by this factor", "", 1e-3, 1e3, "1")).by("--zoom"),
-    row(Scene, choice("ground", "what a model without a camera and lights stands on", GROUNDS, "auto")).by("--ground"),
+    row(Scene, choice("ground", "what a model without a camera and lights stands on", GROUNDS, "auto"))
+        .by("--ground"),
     // Deeper paths too, unless `max_depth` is said.
     row(
         Scene,
         number("fog", "fog around everything, and how far one sees in it; 0 is none", "m", 0.0, 1e6, "0"),
-    ).by("--fog"),
+    )
+    .by("--fog"),
     row(
         Scene,
         text(
             "orbit",
-            "the position of the studio's camera: degrees to the right of the model's front and degrees above it, as \
-             AZ,EL",
+            "the position of the studio's camera: degrees to the right of the model's front and \
+             degrees above it, as AZ,EL",
             "26.5,17.8",
         ),
-    ).by("--orbit"),
+    )
+    .by("--orbit"),
     row(
         Scene,
         choice("up", "the model's up axis; auto infers it from the format and the shape", AXES, "auto"),
-    ).by("--up"),
+    )
+    .by("--up"),
     row(
         Scene,
         choice("front", "the model's front axis; auto infers it from the format and the shape", AXES, "auto"),
-    ).by("--front"),
+    )
+    .by("--front"),
     row(
         Scene,
         number(
@@ -171,7 +184,8 @@ pub const ROWS: &[SettingRow] = &[
             10_000.0,
             "45",
         ),
-    ).by("--focal"),
+    )
+    .by("--focal"),
     row(Samples, number("time", "the time that the picture shows", "s", -1e9, 1e9, "0")).by("--at"),
     row(Samples, number("shutter", "how long the shutter is open", "s", 0.0, 1e9, "0")),
     row(
@@ -191,7 +205,8 @@ pub const ROWS: &[SettingRow] = &[
         Samples,
         choice(
             "texture_filter",
-            "how image textures are filtered: over a footprint of half a pixel, for less noise, or not at all",
+            "how image textures are filtered: over a footprint of half a pixel, for less noise, or \
+             not at all",
             &["footprint", "none"],
             "footprint",
         ),
@@ -201,14 +216,16 @@ pub const ROWS: &[SettingRow] = &[
         Display,
         number(
             "exposure",
-            "brightens display formats by this many stops (powers of two); if it is not given, a picture by the light of a \
-             glTF or OBJ file, where that is too bright or too dim for a display, is exposed to show it",
+            "brightens display formats by this many stops (powers of two); if it is not given, a \
+             picture by the light of a glTF or OBJ file, where that is too bright or too dim for a \
+             display, is exposed to show it",
             "EV",
             -64.0,
             64.0,
             "0",
         ),
-    ).by("--exposure"),
+    )
+    .by("--exposure"),
     row(
         Display,
         Parameter {
@@ -227,25 +244,29 @@ pub const ROWS: &[SettingRow] = &[
             "the background: surroundings, transparent, or a colour (white, #rrggbb or R,G,B)",
             "surroundings",
         ),
-    ).by("--background"),
+    )
+    .by("--background"),
     row(
         Display,
         text(
             "tonemap",
-            "the tone-mapping curve for display formats; auto is neutral if the studio lights the model, unless \
-             all of it is unlit, else none",
+            "the tone-mapping curve for display formats; auto is neutral if the studio lights the \
+             model, unless all of it is unlit, else none",
             "auto",
         ),
-    ).by("--tonemap"),
+    )
+    .by("--tonemap"),
     row(
         Display,
         choice(
             "denoise",
-            "the denoiser; display uses the best one for display formats when noise or time ends the render",
+            "the denoiser; display uses the best one for display formats when noise or time ends the \
+             render",
             DENOISE,
             "display",
         ),
-    ).by("--denoise"),
+    )
+    .by("--denoise"),
     row(
         Display,
         choice("transfer", "the transfer function from linear light to bytes", &["srgb", "linear"], "srgb"),
@@ -258,12 +279,13 @@ pub const ROWS: &[SettingRow] = &[
         Building,
         choice(
             "build",
-            "how much time building the tree may take; auto is best for bvh8 from 64 samples per triangle on, else \
-             balanced",
+            "how much time building the tree may take; auto is best for bvh8 from 64 samples per \
+             triangle on, else balanced",
             &["auto", "fast", "balanced", "best"],
             "auto",
         ),
-    ).by("--build"),
+    )
+    .by("--build"),
     row(
         Building,
         choice(
@@ -273,7 +295,8 @@ pub const ROWS: &[SettingRow] = &[
             "auto",
         ),
     ),
-    row(Building, choice("bsp_split", "how bsp chooses its planes", &["mean", "fuchs"], "mean")).by("--bsp-split"),
+    row(Building, choice("bsp_split", "how bsp chooses its planes", &["mean", "fuchs"], "mean"))
+        .by("--bsp-split"),
     row(
         Building,
         choice(
@@ -282,7 +305,8 @@ pub const ROWS: &[SettingRow] = &[
             &["polygons", "objects"],
             "polygons",
         ),
-    ).by("--bsp-group"),
+    )
+    .by("--bsp-group"),
     row(Building, switch("early_out", "end a traversal at the first hit that no closer hit can replace")),
     row(Building, switch("cull_by_partition", "reject back faces by the side of their partition plane")),
 ];
