@@ -118,3 +118,31 @@ impl Plane {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bilux_math::Stream;
+
+    /// Half the largest extent times 8 · 2⁻²⁴ is enough, and an eighth of that is not.
+    #[test]
+    fn planes_through_points_of_a_mesh_pass_them_within_the_tolerance() {
+        let bounds = Aabb { min: Vec3::new(-1.0, -3.0, -2.0) + 10.0, max: Vec3::new(1.0, 3.0, 2.0) + 10.0 };
+        let Space { centre, tolerance } = Space::new(&bounds);
+        assert_eq!((centre, tolerance), (Vec3::splat(10.0), 3.0 * 8.0 / 16_777_216.0));
+        let mut stream = Stream::new([5]);
+        let mut farthest = 0.0f64;
+        for i in 0..100_000 {
+            // Every other one nearly along an axis.
+            let flat = if i % 2 == 0 { 1.0 } else { 3e-7 };
+            let mut point = || {
+                let mut at = || 2.0 * stream.uniform() - 1.0;
+                DVec3::new(at(), 3.0 * at(), 2.0 * flat * at())
+            };
+            let [a, b, c] = [point(), point(), point()];
+            let Some(plane) = Plane::through(a, (b - a).cross(c - a)) else { continue };
+            farthest = [a, b, c].into_iter().fold(farthest, |far, p| far.max(plane.distance(p).abs()));
+        }
+        assert!((tolerance / 8.0..tolerance).contains(&farthest), "{farthest}, not {tolerance}");
+    }
+}

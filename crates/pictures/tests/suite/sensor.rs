@@ -110,8 +110,11 @@ fn a_full_well_and_the_largest_number_end_the_curve() {
     let bright = 100_000.0 / sensor.photons(1.0, 1);
     let [mean, variance, _] = moments(&numbers(&Sensor { read_noise: 0.0, ..sensor.clone() }, bright));
     assert_eq!((mean, variance), (20.0 + 2_000.0, 0.0));
-    let reading = Sensor { gain: 1.0, ..sensor }.read(&grey(bright)).unwrap();
+    let reading = Sensor { gain: 1.0, ..sensor.clone() }.read(&grey(bright)).unwrap();
     assert!(reading.raw.channel("Y").unwrap().iter().all(|&number| number == 4095.0));
+    assert_eq!(reading.saturated, (SIDE * SIDE) as u64);
+    // A pixel with three numbers is one pixel.
+    let reading = Sensor { gain: 1.0, pattern: Pattern::Prism, ..sensor }.read(&grey(bright)).unwrap();
     assert_eq!(reading.saturated, (SIDE * SIDE) as u64);
 }
 

@@ -219,3 +219,22 @@ impl Guide {
             .then(|| (light * self.side + of(aim.y)) * self.side + of(aim.x))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::techniques::Contribution;
+    use bilux_math::Rgb;
+
+    #[test]
+    fn no_number_of_a_light_is_that_of_none() {
+        let none = Contribution::<1>::only(Rgb::BLACK);
+        assert_eq!((none.origin, none.light_index()), (NO_LIGHT, None));
+        for (light, index) in
+            [(0, 0), (7, 7), (65_533, 65_533), (65_534, 65_534), (65_535, 65_534), (90_000, 65_534)]
+        {
+            let found = Contribution { origin: light_number(light), ..none };
+            assert_eq!(found.light_index(), Some(index), "{light}");
+        }
+    }
+}
