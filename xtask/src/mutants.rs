@@ -16,6 +16,7 @@ const SUITES: &[(&str, &[&str])] = &[
     ("accel", &["bilux-accel"]),
     ("visibility", &["bilux-visibility"]),
     ("scene", &["bilux-scene", "bilux-transport", "bilux-validation"]),
+    ("gallery", &["bilux-gallery", "bilux-formats"]),
     ("transport", &["bilux-transport", "bilux-validation"]),
     ("import", &["bilux-import", "bilux-formats"]),
     ("meshes", &["bilux-meshes", "bilux-formats"]),

@@ -11,6 +11,7 @@ pub(crate) const LIBRARIES: &[&str] = &[
     "bilux-visibility",
     "bilux-pictures",
     "bilux-scene",
+    "bilux-gallery",
     "bilux-transport",
     "bilux-import",
     "bilux-meshes",

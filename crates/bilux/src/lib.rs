@@ -29,6 +29,7 @@ pub mod settings;
 
 pub use bilux_accel as accel;
 pub use bilux_formats as formats;
+pub use bilux_gallery as gallery;
 pub use bilux_math as math;
 pub use bilux_pictures as pictures;
 pub use bilux_scene as scene;
@@ -104,5 +105,5 @@ pub fn load(path: &Path, options: &bilux_formats::ReadOptions) -> Result<SceneBu
 /// # Errors
 /// If no generator has this name, or a parameter is wrong.
 pub fn generate(spec: &Spec) -> Result<SceneBuilder, Error> {
-    Ok(bilux_scene::generators::generate(spec)?)
+    Ok(bilux_gallery::generate(spec)?)
 }

@@ -10,7 +10,6 @@ pub mod bsdf;
 pub mod builder;
 pub mod cameras;
 pub mod classic;
-pub mod generators;
 pub mod geometry;
 mod grid;
 mod kept;

@@ -1,6 +1,8 @@
-//! Development only: how much tests take, statistics, and verdicts that are remembered.
+//! Development only: how much tests take, statistics, whether meshes are closed, and verdicts that are remembered.
 
 mod effort;
+#[cfg(feature = "solids")]
+pub mod solids;
 #[cfg(feature = "statistics")]
 pub mod statistics;
 pub mod verdicts;

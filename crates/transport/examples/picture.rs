@@ -1,11 +1,11 @@
 //! Renders a procedural scene: `picture SCENE INTEGRATOR SAMPLES SIZE OUT.png`, where SCENE is `still-life` (a plastic,
-//! a mirror and a glass ball) or a row of `bilux_scene::generators::GENERATORS`.
+//! a mirror and a glass ball) or a row of `bilux_gallery::GENERATORS`.
 
 #[path = "../tests/suite/common/mod.rs"]
 mod common;
 
 use bilux_pictures::{WriteOptions, write};
-use bilux_scene::{Spec, generators};
+use bilux_scene::Spec;
 use bilux_transport::RenderSettings;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -15,7 +15,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let builder = match scene.as_str() {
         "still-life" => common::still_life(),
-        name => generators::generate(&Spec::new("", name))?,
+        name => bilux_gallery::generate(&Spec::new("", name))?,
     };
     let size = size.parse()?;
     let settings = RenderSettings::new(size, size, samples.parse()?);

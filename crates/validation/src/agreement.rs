@@ -17,9 +17,9 @@ use crate::chi_square::uniforms;
 use crate::statistics::{estimate, is_skewed, sidak, welch};
 use bilux::Error;
 use bilux::formats::ReadOptions;
+use bilux::gallery::GENERATORS;
 use bilux_math::transcendental::{acos, atan2, sin_cos};
 use bilux_math::{Rgb, Vec2, Vec3};
-use bilux_scene::generators::GENERATORS;
 use bilux_scene::{
     AccelChoice, CameraSample, Reader, Scene, SceneBuilder, Spec, Texture, Tracer, TransportMode, Value,
 };

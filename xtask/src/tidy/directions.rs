@@ -12,7 +12,9 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("bilux-visibility", &["bilux-math", "bilux-accel"]),
     ("bilux-pictures", &["bilux-math"]),
     ("bilux-scene", &["bilux-math", "bilux-accel", "bilux-pictures"]),
-    ("bilux-transport", &["bilux-math", "bilux-accel", "bilux-pictures", "bilux-scene"]),
+    ("bilux-gallery", &["bilux-math", "bilux-scene"]),
+    // Its tests render built-in scenes.
+    ("bilux-transport", &["bilux-math", "bilux-accel", "bilux-pictures", "bilux-scene", "bilux-gallery"]),
     ("bilux-import", UNDER_IMPORT),
     ("bilux-meshes", UNDER_FORMAT),
     ("bilux-gltf", UNDER_FORMAT),
@@ -26,6 +28,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "bilux-math",
             "bilux-pictures",
             "bilux-scene",
+            "bilux-gallery",
             "bilux-import",
             "bilux-meshes",
             "bilux-gltf",

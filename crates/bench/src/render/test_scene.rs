@@ -5,8 +5,8 @@ use super::reference::{Reference, ReferenceOptions, make_reference};
 use super::scenes::{chosen_scenes, generated};
 use crate::ProgressFn;
 use bilux::Error;
+use bilux::gallery::GENERATORS;
 use bilux::scene::SceneBuilder;
-use bilux::scene::generators::GENERATORS;
 use std::path::Path;
 
 /// A scene to measure on, and its expected picture.

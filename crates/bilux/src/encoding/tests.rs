@@ -2,11 +2,11 @@
 
 use super::*;
 use crate::Job;
+use bilux_gallery::GENERATORS;
 use bilux_math::glam::Vec4;
 use bilux_math::hash::hash_words;
 use bilux_math::{Motion, MotionKey, Quat, Rgb, Transform, Vec2, Vec3};
 use bilux_scene::cameras::CameraSpec;
-use bilux_scene::generators::GENERATORS;
 use bilux_scene::texture::{Channel, Filter, Image, Texels, UvTransform, Wrap};
 use bilux_scene::{
     Animation, Axis, Mesh, Object, Parameters, Span, StrokeWidths, Texture, UpHint, Value, Visibility,

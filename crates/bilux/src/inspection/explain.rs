@@ -300,7 +300,7 @@ mod tests {
                 .with("radiance", 50.0f32),
         ];
         let glass = scene.add_material(Spec::new("", "dielectric"));
-        let ball = bilux_scene::generators::shapes::icosphere(Vec3::new(0.0, 1.0, 0.0), 0.15, 3);
+        let ball = bilux_scene::mesh::shapes::icosphere(Vec3::new(0.0, 1.0, 0.0), 0.15, 3);
         scene.objects.push(Object::new("globe", std::sync::Arc::new(ball), glass));
         let found = explained(&scene);
         let bulb = found.measures.onto_glass.iter().find(|(name, _)| name == "bulb");

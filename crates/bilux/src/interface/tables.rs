@@ -128,7 +128,7 @@ pub static TABLES: &[Table] = &[
     Table {
         name: "generators",
         summary: "built-in scenes",
-        rows: rows!(bilux_scene::generators::GENERATORS),
+        rows: rows!(bilux_gallery::GENERATORS),
         details: none,
     },
     Table {

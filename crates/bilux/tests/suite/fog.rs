@@ -3,8 +3,8 @@
 use bilux::math::{Aabb, Transform, Vec3};
 use bilux::prelude::*;
 use bilux::scene::cameras::CameraSpec;
-use bilux::scene::generators::shapes::cuboid;
 use bilux::scene::media::Grid;
+use bilux::scene::mesh::shapes::cuboid;
 use std::sync::Arc;
 
 fn put(scene: &mut SceneBuilder, [low, high]: [Vec3; 2], material: Spec) {

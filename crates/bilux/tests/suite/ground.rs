@@ -9,7 +9,7 @@ fn slab(light_spec: Option<Spec>) -> SceneBuilder {
     let mut scene = SceneBuilder::default();
     let red = scene.add_material(Spec::new("", "diffuse").with("reflectance", Rgb::new(0.7, 0.1, 0.1)));
     let bounds = Aabb { min: Vec3::new(-1.0, 0.0, -0.3), max: Vec3::new(1.0, 1.6, 0.3) };
-    scene.objects.push(Object::new("slab", Arc::new(bilux::scene::generators::shapes::cuboid(bounds)), red));
+    scene.objects.push(Object::new("slab", Arc::new(bilux::scene::mesh::shapes::cuboid(bounds)), red));
     scene.lights.extend(light_spec);
     scene
 }
@@ -83,7 +83,7 @@ fn the_shadow_over_white_is_that_of_the_ground() {
     let lid = Aabb { min: Vec3::new(-1.0, 1.0, -1.0), max: Vec3::new(1.0, 1.001, 1.0) };
     let post = Aabb { min: Vec3::new(-0.001, 0.0, -0.001), max: Vec3::new(0.001, 1.0, 0.001) };
     for bounds in [lid, post] {
-        let mesh = bilux::scene::generators::shapes::cuboid(bounds);
+        let mesh = bilux::scene::mesh::shapes::cuboid(bounds);
         scene.objects.push(Object::new("", Arc::new(mesh), black));
     }
     scene.lights.push(Spec::new("", "environment").with("radiance", 1.0f32));

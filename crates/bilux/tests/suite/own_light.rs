@@ -4,7 +4,7 @@ use bilux::Series;
 use bilux::math::{Aabb, Rgb, Vec3};
 use bilux::prelude::*;
 use bilux::scene::cameras::CameraSpec;
-use bilux::scene::generators::shapes;
+use bilux::scene::mesh::shapes;
 use bilux::scene::texture::Texture;
 use std::sync::Arc;
 

@@ -7,7 +7,7 @@ use bilux::math::{Aabb, Vec2, Vec3};
 use bilux::prelude::*;
 use bilux::scene::AccelChoice;
 use bilux::scene::cameras::CameraSpec;
-use bilux::scene::generators::shapes;
+use bilux::scene::mesh::shapes;
 use std::f64::consts::PI;
 use std::sync::Arc;
 

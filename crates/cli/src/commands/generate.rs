@@ -36,7 +36,7 @@ pub fn run(arguments: &Generate, common: &Common) -> anyhow::Result<u8> {
         Some(file) => {
             let model = load(file, &read_options(common))?;
             let offset = arguments.offset.map_or(Vec3::X, Vec3::from);
-            bilux::scene::generators::copies(&model, arguments.count.unwrap_or(1), offset)
+            bilux::gallery::copies(&model, arguments.count.unwrap_or(1), offset)
         }
         None => bilux::generate(&spec(arguments).map_err(usage::wrong)?).map_err(usage::wrong)?,
     };

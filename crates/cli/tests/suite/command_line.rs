@@ -401,7 +401,7 @@ fn procedural_textures_are_rendered() {
 fn every_shipped_scene_is_made_read_and_rendered_the_same() {
     let folder = TempDir::new().unwrap();
     let path = folder.path();
-    for row in bilux::scene::generators::GENERATORS {
+    for row in bilux::gallery::GENERATORS {
         let name = row.entry.name;
         bilux(path).args(["generate", name, "-o", "scene.toml"]).assert().success();
         let render = ["render", "scene.toml", "--size", "24x24", "-i", "whitted", "-o", "read.pfm"];

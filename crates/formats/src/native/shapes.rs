@@ -2,7 +2,7 @@
 
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Aabb, Vec3};
-use bilux_scene::generators::shapes;
+use bilux_scene::mesh::shapes;
 use bilux_scene::{Mesh, Reader};
 
 /// A row of [`SHAPES`].

@@ -5,7 +5,7 @@ use crate::shared_files::{files, scenes};
 use crate::{read_text, warnings};
 use bilux_formats::{ReadOptions, WriteOptions, read, write};
 use bilux_math::{Motion, MotionKey, Quat, Rgb, Vec2, Vec3};
-use bilux_scene::generators::shapes;
+use bilux_scene::mesh::shapes;
 use bilux_scene::texture::UvPair;
 use bilux_scene::{Object, SceneBuilder, Spec, Texture, Value};
 use bilux_testing::effort;

@@ -2,10 +2,10 @@
 
 use crate::{read_text, refusal, warnings};
 use bilux_formats::{FormatError, ReadOptions, SHAPES, WriteOptions, read, toml_schema, write};
+use bilux_gallery::GENERATORS;
 use bilux_math::registry::{Parameter, ParameterKind};
 use bilux_math::transcendental::sin_cos;
 use bilux_math::{Rgb, Transform, Vec2, Vec3};
-use bilux_scene::generators::GENERATORS;
 use bilux_scene::media::Grid;
 use bilux_scene::{Mesh, Object, SceneBuilder, Spec, Value};
 use std::path::Path;

@@ -2,8 +2,8 @@
 
 use crate::read_text;
 use bilux_formats::{WriteOptions, toml_schema, write};
+use bilux_gallery::{GENERATORS, generate};
 use bilux_scene::Spec;
-use bilux_scene::generators::{GENERATORS, generate};
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 

@@ -7,7 +7,7 @@ use bilux_import::world::camera_loss::{field_of_view, not_perspective, picture_a
 use bilux_import::world::placement::looking;
 use bilux_math::{MotionKey, Rgb, Vec3};
 use bilux_scene::cameras::CameraSpec;
-use bilux_scene::generators::shapes;
+use bilux_scene::mesh::shapes;
 use bilux_scene::{Mesh, Spec, Value};
 use serde_json::{Value as Json, json};
 use std::borrow::Cow;

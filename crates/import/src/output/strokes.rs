@@ -3,7 +3,7 @@
 use crate::output::writing::Writing;
 use bilux_math::transcendental::{cos, sin};
 use bilux_math::{Vec2, Vec3};
-use bilux_scene::generators::shapes;
+use bilux_scene::mesh::shapes;
 use bilux_scene::{Mesh, Object, SceneBuilder};
 use std::borrow::Cow;
 use std::f32::consts::TAU;

@@ -67,7 +67,7 @@ impl Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generators::shapes;
+    use crate::mesh::shapes;
     use bilux_math::Aabb;
 
     #[test]

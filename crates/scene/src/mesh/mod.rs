@@ -1,5 +1,6 @@
 //! Triangles, points and lines, with the attributes for shading.
 pub(crate) mod closed;
+pub mod shapes;
 pub(crate) mod sides;
 use bilux_math::glam::Vec4;
 use bilux_math::transcendental::sin_cos;

@@ -1,7 +1,7 @@
 //! Fog around everything, for those who want just that.
 
 use crate::builder::{Object, SceneBuilder};
-use crate::generators::shapes::cuboid;
+use crate::mesh::shapes::cuboid;
 use crate::parameters::Spec;
 use bilux_math::{Aabb, Vec3};
 use std::sync::Arc;

@@ -6,7 +6,7 @@ use bilux_math::motion::{Motion, MotionKey};
 use bilux_math::transcendental::{acos_f64, atan2_f64, cos_f64, sin_cos_f64, sin_f64};
 use bilux_math::{DMat4, DVec3, Rgb, Transform, Vec2, Vec3};
 use bilux_scene::cameras::CameraSpec;
-use bilux_scene::generators::shapes::uv_sphere;
+use bilux_scene::mesh::shapes::uv_sphere;
 use bilux_scene::{
     AccelChoice, CameraSample, Light, Mesh, Object, Ray, Scene, SceneBuilder, Spec, Surface, Texture, Tracer,
     TransportMode, Value,

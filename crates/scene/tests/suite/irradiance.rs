@@ -3,7 +3,7 @@
 
 use bilux_math::transcendental::{atan2_f64, sin_cos};
 use bilux_math::{DVec3, Frame, Motion, Transform, Vec2, Vec3, warp};
-use bilux_scene::generators::shapes;
+use bilux_scene::mesh::shapes;
 use bilux_scene::{
     AccelChoice, Goniometer, IntensityDistribution, LIGHTS, Light, LightSample, Object, Ray, Scene,
     SceneBuilder, Spec, Surface, Tracer,

@@ -2,7 +2,6 @@
 
 mod cameras;
 mod conventions;
-mod generators;
 mod irradiance;
 mod normal_maps;
 mod orientation;
@@ -10,5 +9,6 @@ mod presets;
 mod principled;
 mod rebuilding;
 mod scene;
+mod shapes;
 mod strokes;
 mod typed;

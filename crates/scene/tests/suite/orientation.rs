@@ -1,7 +1,7 @@
 //! Models are oriented by up axis and front before they are framed.
 
 use bilux_math::{Aabb, DMat4, DVec3, Transform, Vec3};
-use bilux_scene::generators::shapes;
+use bilux_scene::mesh::shapes;
 use bilux_scene::presets::{Studio, complete};
 use bilux_scene::{Axis, Mesh, Object, Orientation, OrientationSource, SceneBuilder, Spec, UpHint, Value};
 use std::sync::Arc;

@@ -4,7 +4,7 @@ use bilux_math::motion::Motion;
 use bilux_math::transcendental::asin;
 use bilux_math::{DMat4, DVec3, Transform, Vec2, Vec3};
 use bilux_scene::cameras::{self, CameraSpec};
-use bilux_scene::generators::teapot::Teapot;
+use bilux_scene::mesh::shapes;
 use bilux_scene::presets::{Ground, PRESETS, Studio, apply, complete};
 use bilux_scene::{AccelChoice, Axis, CameraSample, Mesh, Object, SceneBuilder, Spec, UpHint, Value};
 use std::sync::Arc;
@@ -22,8 +22,12 @@ fn points(positions: &[[f32; 3]]) -> SceneBuilder {
     scene_of(Mesh { positions, triangles, ..Mesh::default() })
 }
 
-fn teapot() -> SceneBuilder {
-    scene_of(Teapot::default().mesh())
+/// A round body, longer to one side than to the other, which stands on the plane y = 0.
+fn pot() -> SceneBuilder {
+    let mut mesh = shapes::blob(Vec3::ZERO, 3, |d| 1.6 + 0.9 * d.x * d.x + 0.4 * d.x);
+    let lowest = mesh.bounds().min.y;
+    mesh.positions.iter_mut().for_each(|p| p.y -= lowest);
+    scene_of(mesh)
 }
 
 /// Position at which the scene's camera sees a point, -1..=1 within a square image; derived from the camera's own rays.
@@ -73,7 +77,7 @@ fn builds(scene: &SceneBuilder) {
 
 #[test]
 fn a_bare_model_is_framed_whole_and_fills_the_picture() {
-    let mut scene = teapot();
+    let mut scene = pot();
     complete(&mut scene, &Studio::default());
     builds(&scene);
     let reach = reach(&scene);
@@ -139,17 +143,17 @@ fn a_bare_model_gets_clay_and_a_floor() {
 
 #[test]
 fn only_missing_parts_are_added() {
-    let mut lit = teapot();
+    let mut lit = pot();
     lit.lights.push(Spec::new("mine", "point"));
     complete(&mut lit, &Studio::default());
     assert_eq!((lit.lights.len(), lit.cameras.len(), lit.objects.len()), (1, 1, 1));
 
-    let mut luminous = teapot();
+    let mut luminous = pot();
     luminous.materials[0].parameters.set("emission", 1.0f32);
     complete(&mut luminous, &Studio::default());
     assert_eq!((luminous.lights.len(), luminous.cameras.len()), (0, 1));
     for emission in ["emission", "medium_emission"] {
-        let mut dark = teapot();
+        let mut dark = pot();
         dark.materials[0].parameters.set(emission, Value::triple([0.0; 3]));
         complete(&mut dark, &Studio::default());
         assert_eq!((dark.lights.len(), dark.cameras.len()), (3, 1), "{emission}");
@@ -160,7 +164,7 @@ fn only_missing_parts_are_added() {
         assert_eq!(dark.lights.len(), 0, "{emission}");
     }
 
-    let mut seen = teapot();
+    let mut seen = pot();
     let mine = CameraSpec { spec: Spec::new("mine", "orthographic"), keyframes: Vec::new() };
     seen.cameras.push(mine.clone());
     complete(&mut seen, &Studio::default());
@@ -172,11 +176,11 @@ fn only_missing_parts_are_added() {
 #[test]
 fn every_preset_gives_a_scene_that_builds() {
     for row in PRESETS {
-        for mut scene in [teapot(), points(&[]), points(&[[1.0; 3]])] {
+        for mut scene in [pot(), points(&[]), points(&[[1.0; 3]])] {
             apply(row.entry.name, &mut scene).unwrap();
             builds(&scene);
         }
-        let mut moving = teapot();
+        let mut moving = pot();
         let key = |time_seconds: f32| bilux_math::MotionKey {
             time_seconds,
             translation: Vec3::X * time_seconds,
@@ -187,24 +191,24 @@ fn every_preset_gives_a_scene_that_builds() {
         apply(row.entry.name, &mut moving).unwrap();
         builds(&moving);
     }
-    let error = apply("curse", &mut teapot()).err().unwrap().to_string();
+    let error = apply("curse", &mut pot()).err().unwrap().to_string();
     assert!(error.contains("did you mean 'course'?"), "{error}");
 }
 
 #[test]
 fn the_course_camera_is_left_handed() {
-    let mut scene = teapot();
+    let mut scene = pot();
     apply("course", &mut scene).unwrap();
     // From (-10, 5, -10) towards the origin, y × z points along (1, 0, -1).
     assert!(seen_at(&scene, Vec3::new(0.5, 0.0, -0.5)).unwrap().x > 0.0);
     assert!(seen_at(&scene, Vec3::Y * 0.5).unwrap().y > 0.0);
-    // The foot of the teapot, computed by hand: the origin maps to (0, -3.25, 3.5).
+    // The foot of the pot, computed by hand: the origin maps to (0, -3.25, 3.5).
     assert_eq!(scene.objects[0].motion.at(0.0).point(Vec3::ZERO), Vec3::new(0.0, -3.25, 3.5));
 }
 
 #[test]
 fn the_paper_looks_from_minus_one_through_a_screen_of_two_by_two() {
-    let mut scene = teapot();
+    let mut scene = pot();
     let wide = Transform::from_matrix(DMat4::from_scale(DVec3::new(1.0, 3.0, 1.0))).unwrap();
     scene.objects[0].motion = Motion::still(wide);
     apply("paper", &mut scene).unwrap();
@@ -225,7 +229,7 @@ fn studio_options_are_applied() {
         focal: Some(135.0),
         ..Studio::default()
     };
-    let mut scene = teapot();
+    let mut scene = pot();
     complete(&mut scene, &asked);
     builds(&scene);
     assert!((0.85..0.9).contains(&reach(&scene)), "{}", reach(&scene));
@@ -235,14 +239,14 @@ fn studio_options_are_applied() {
     assert!((direction - Vec3::NEG_X).length() < 1e-5, "{direction}");
     assert_eq!(scene.materials.last().map(|m| m.kind.as_str()), Some("mirror"));
     // The user's choices override the file's, and the rest of the file is kept.
-    let mut seen = teapot();
+    let mut seen = pot();
     seen.cameras.push(CameraSpec { spec: Spec::new("mine", "orthographic"), keyframes: Vec::new() });
     seen.lights.push(Spec::new("mine", "point"));
     complete(&mut seen, &Studio { orbit: Some([0.0, 30.0]), ..Studio::default() });
     let names: Vec<_> = seen.cameras.iter().map(|camera| camera.spec.name.as_str()).collect();
     assert_eq!((names, seen.lights.len(), seen.objects.len()), (vec!["studio", "mine"], 1, 1));
     // From below, a floor would hide the model.
-    let mut below = teapot();
+    let mut below = pot();
     complete(&mut below, &Studio { orbit: Some([0.0, -40.0]), ..Studio::default() });
     assert_eq!(below.objects.len(), 1);
 }
@@ -250,7 +254,7 @@ fn studio_options_are_applied() {
 /// Surroundings of a model have no place in its coordinates, which a format may turn and scale; a lamp has.
 #[test]
 fn surroundings_do_not_keep_a_model_from_standing_upright() {
-    let bare = SceneBuilder { up: UpHint::Is(Axis::Z), unit: 0.001, ..teapot() };
+    let bare = SceneBuilder { up: UpHint::Is(Axis::Z), unit: 0.001, ..pot() };
     let placed = |light: Option<Spec>| {
         let mut scene = bare.clone();
         scene.lights.extend(light);
@@ -268,15 +272,15 @@ fn surroundings_do_not_keep_a_model_from_standing_upright() {
 
 #[test]
 fn cut_outs_get_no_cove_and_backdrops_are_not_lights() {
-    let mut scene = teapot();
+    let mut scene = pot();
     complete(&mut scene, &Studio { cut_out: true, ..Studio::default() });
     assert_eq!((scene.objects.len(), scene.lights.len()), (1, 3));
-    let mut scene = teapot();
+    let mut scene = pot();
     scene.lights.push(Spec::new("behind", "environment").with("backdrop", true));
     complete(&mut scene, &Studio::default());
     assert_eq!((scene.objects.len(), scene.lights.len()), (1, 4));
     // It is present nevertheless if the user asks for it.
-    let mut scene = teapot();
+    let mut scene = pot();
     complete(&mut scene, &Studio { cut_out: true, ground: Some(Ground::Shadow), ..Studio::default() });
     assert_eq!(scene.objects.len(), 2);
 }
@@ -288,7 +292,7 @@ fn lights_of_formats_without_environments_get_the_studio_environment() {
         complete(&mut scene, &Studio::default());
         scene.lights.into_iter().map(|light| light.name).collect()
     };
-    let mut scene = teapot();
+    let mut scene = pot();
     scene.lights.push(Spec::new("mine", "directional"));
     assert_eq!(names(&scene), ["mine"], "other formats could have said it");
     scene.environment_unspecified = true;
@@ -303,7 +307,7 @@ fn lights_of_formats_without_environments_get_the_studio_environment() {
 #[test]
 fn dim_emitters_are_not_lights_where_surroundings_cannot_be_described() {
     for (emission, lights) in [(0.6f32, 3), (1.0, 0), (20.0, 0)] {
-        let mut scene = SceneBuilder { environment_unspecified: true, ..teapot() };
+        let mut scene = SceneBuilder { environment_unspecified: true, ..pot() };
         scene.materials[0].parameters.set("emission", Value::triple([0.0, emission, 0.0]));
         complete(&mut scene, &Studio::default());
         assert_eq!(scene.lights.len(), lights, "{emission}");
@@ -318,9 +322,9 @@ fn described_light_is_all_the_light() {
         complete(&mut scene, &Studio::default());
         scene.lights.len()
     };
-    assert_eq!(lights(&teapot()), 3, "nothing is said of light");
+    assert_eq!(lights(&pot()), 3, "nothing is said of light");
     for emission in [Value::Number(1e-3), Value::triple([0.0, 0.9, 0.0]), Value::Texture(0)] {
-        let mut scene = teapot();
+        let mut scene = pot();
         scene.materials[0].parameters.set("emission", emission.clone());
         assert_eq!(lights(&scene), 0, "{emission:?}");
         // No object is made of it.
@@ -328,12 +332,12 @@ fn described_light_is_all_the_light() {
         scene.objects[0].material = 1;
         assert_eq!(lights(&scene), 3, "unused: {emission:?}");
     }
-    assert_eq!(lights(&SceneBuilder { describes_all_light: true, ..teapot() }), 0, "black, as in pbrt");
+    assert_eq!(lights(&SceneBuilder { describes_all_light: true, ..pot() }), 0, "black, as in pbrt");
 }
 
 #[test]
 fn the_key_light_is_on_the_side_of_an_existing_camera() {
-    let mut seen = teapot();
+    let mut seen = pot();
     let spec = Spec::new("mine", "perspective")
         .with("position", Vec3::new(-6.0, 2.0, -5.0))
         .with("look_at", Vec3::ZERO);

@@ -5,7 +5,7 @@ use crate::common::statistics::{UNLIKELY, agreement, blocks, difference, recorde
 use crate::common::{ball, built, diffuse, effort, floor, look, put, quad, shoot, sky};
 use bilux_math::transcendental::exp_f64;
 use bilux_math::{Aabb, Rgb, Vec2, Vec3};
-use bilux_scene::generators::shapes::cuboid;
+use bilux_scene::mesh::shapes::cuboid;
 use bilux_scene::{CameraSample, Scene, SceneBuilder, Spec, Value};
 use bilux_transport::{PixelIntegrator, RenderSettings, integrators};
 use std::f64::consts::PI;

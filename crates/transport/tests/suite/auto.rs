@@ -118,7 +118,7 @@ fn the_noise_of_paths_behind_a_pane_is_predicted() {
 /// by a factor of four from pilot to pilot, and say that photons are as noisy as paths.
 #[test]
 fn every_pilot_of_a_large_film_sees_that_photons_have_less_noise_than_paths() {
-    let scene = built(&bilux_scene::generators::generate(&Spec::new("", "cornell")).unwrap());
+    let scene = built(&bilux_gallery::generate(&Spec::new("", "cornell")).unwrap());
     for seed in 0..4 {
         let film = RenderSettings { seed, ..RenderSettings::new(512, 384, 1) };
         let plan = integrators::build(&auto()).unwrap().chooser().unwrap().plan(
@@ -139,7 +139,7 @@ fn every_pilot_of_a_large_film_sees_that_photons_have_less_noise_than_paths() {
 /// Of light on the bottom of a pool photons are best by far, so `auto` merges; where it may not, it takes the best of what does not.
 #[test]
 fn what_may_never_merge_does_not() {
-    let scene = built(&bilux_scene::generators::generate(&Spec::new("", "pool")).unwrap());
+    let scene = built(&bilux_gallery::generate(&Spec::new("", "pool")).unwrap());
     let merges = |techniques: &str| ["few", "photons", "vcm"].iter().any(|word| techniques.contains(word));
     for (merge, may_merge) in [("auto", true), ("never", false)] {
         let auto = integrators::build(&auto().with("merge", merge)).unwrap();

@@ -5,7 +5,7 @@ use crate::common::{ball, built, diffuse, effort, integrator, look, put, quad, s
 use bilux_math::transcendental::{asin_f64, sin_cos_f64, sin_f64, tan_f64};
 use bilux_math::{Aabb, DVec3, Rgb, Vec3};
 use bilux_scene::cameras::CameraSpec;
-use bilux_scene::generators::shapes;
+use bilux_scene::mesh::shapes;
 use bilux_scene::{Ray, Scene, SceneBuilder, Spec, Wavelength};
 use bilux_transport::{
     LightSubpaths, Merging, Photons, PixelIntegrator, RenderSettings, Splats, Task, Window, integrators,

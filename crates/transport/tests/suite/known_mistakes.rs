@@ -153,7 +153,7 @@ fn unmerged(name: &str) -> Box<dyn bilux_transport::PixelIntegrator> {
 fn in_glass(eta: f32, inside: bool) -> Scene {
     let mut builder = SceneBuilder::default();
     let bounds = bilux_math::Aabb { min: Vec3::new(-1.5, -1.0, -1.5), max: Vec3::new(1.5, 1.2, 2.5) };
-    let block = bilux_scene::generators::shapes::cuboid(bounds);
+    let block = bilux_scene::mesh::shapes::cuboid(bounds);
     let glass = Spec::new("", "dielectric").with("eta", eta).with("roughness", 0.6f32);
     put(&mut builder, "block", std::sync::Arc::new(block), glass);
     put(&mut builder, "ball", ball(Vec3::ZERO, 0.7, 10, true), diffuse(Rgb::new(0.8, 0.5, 0.3)));

@@ -5,7 +5,7 @@ use crate::common::statistics::{UNLIKELY, agreement, assert_like_path, assert_un
 use crate::common::{along, ball, built, diffuse, floor, look, put, quad, shoot, sky};
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::cameras::CameraSpec;
-use bilux_scene::generators::shapes::icosphere;
+use bilux_scene::mesh::shapes::icosphere;
 use bilux_scene::{Mesh, Scene, SceneBuilder, Spec, Texture, Value};
 use bilux_transport::{LightChoice, PixelIntegrator, RenderSettings, integrators};
 use std::sync::Arc;

@@ -5,9 +5,9 @@ use crate::common::{
     ball, built, diffuse, effort, floor, integrator, look, mixed, put, shoot, sky, still_life,
 };
 use crate::many_lights::{mesh_of_lamps, painted_lamps, screen};
+use bilux_gallery::GENERATORS;
 use bilux_math::hash::{hash_words, unit_f32};
 use bilux_math::{Rgb, Transform, Vec2, Vec3};
-use bilux_scene::generators::GENERATORS;
 use bilux_scene::texture::Texture;
 use bilux_scene::{AccelChoice, Counters, CpuLevel, Mesh, Object, Ray, Scene, SceneBuilder, Spec, Value};
 use bilux_transport::{Film, LightSubpaths, Merging, Photons, PixelIntegrator, RenderSettings, Splats, Task};
@@ -93,14 +93,14 @@ fn queues_that_are_refilled_give_the_same() {
     put(&mut flint, "flint", ball(Vec3::new(0.0, 0.5, 1.0), 0.5, 8, true), glass);
     assert_same_with("flint", &built(&flint), &settings);
     let spec = Spec::new("", "cornell");
-    assert_same_with("cornell", &built(&bilux_scene::generators::generate(&spec).unwrap()), &settings);
+    assert_same_with("cornell", &built(&bilux_gallery::generate(&spec).unwrap()), &settings);
 }
 
 #[test]
 fn every_built_in_scene_is_the_same() {
     for (turn, row) in GENERATORS.iter().step_by(effort(2, 1)).enumerate() {
         let spec = Spec::new("", row.entry.name);
-        let mut builder = bilux_scene::generators::generate(&spec).unwrap();
+        let mut builder = bilux_gallery::generate(&spec).unwrap();
         if builder.cameras.is_empty() {
             look(&mut builder, Vec3::new(2.0, 2.0, 5.0), Vec3::ZERO, 40.0);
         }

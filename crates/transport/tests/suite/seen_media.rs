@@ -5,8 +5,8 @@ use crate::common::{built, diffuse, integrator, look, put, quad};
 use bilux_math::transcendental::exp_f64;
 use bilux_math::{Aabb, Rgb, Transform, Vec3};
 use bilux_scene::cameras::CameraSpec;
-use bilux_scene::generators::shapes::cuboid;
 use bilux_scene::media::Grid;
+use bilux_scene::mesh::shapes::cuboid;
 use bilux_scene::{Scene, SceneBuilder, Spec, Value};
 use bilux_transport::mattes::{Ranks, mattes};
 use bilux_transport::{

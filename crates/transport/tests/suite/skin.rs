@@ -4,8 +4,8 @@ use crate::common::statistics::{assert_like_path, assert_unlike_path, recorded_m
 use crate::common::{ball, built, effort, integrator, put, quad, sky, without_mirrors};
 use bilux_math::{Aabb, Rgb, Vec2, Vec3};
 use bilux_scene::cameras::CameraSpec;
-use bilux_scene::generators::shapes::cuboid;
 use bilux_scene::media::slab::{Slab, absorbed_fraction};
+use bilux_scene::mesh::shapes::cuboid;
 use bilux_scene::{Mesh, Scene, SceneBuilder, Spec, Texture, Value};
 use bilux_transport::RenderSettings;
 use std::sync::Arc;

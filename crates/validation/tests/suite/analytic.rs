@@ -4,7 +4,7 @@
 use bilux_math::transcendental::{acos_f64, asin_f64, cos_f64, exp_f64, sin_f64, tan_f64};
 use bilux_math::{Aabb, Rgb, Vec2, Vec3};
 use bilux_scene::cameras::CameraSpec;
-use bilux_scene::generators::shapes::{cuboid, disc, icosphere, quad};
+use bilux_scene::mesh::shapes::{cuboid, disc, icosphere, quad};
 use bilux_scene::{AccelChoice, CameraSample, Mesh, Object, Scene, SceneBuilder, Spec, Value};
 use bilux_testing::effort;
 use bilux_transport::{FILTERS, Filter, RenderSettings, Silent, integrators, render};

@@ -17,7 +17,7 @@
 use bilux_math::transcendental::{ln_f64, powf_f64};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::cameras::CameraSpec;
-use bilux_scene::generators::shapes::quad;
+use bilux_scene::mesh::shapes::quad;
 use bilux_scene::{AccelChoice, Object, Scene, SceneBuilder, Spec};
 use bilux_testing::effort;
 use bilux_transport::{RenderSettings, Silent, integrators, render};

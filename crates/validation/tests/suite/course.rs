@@ -1,8 +1,8 @@
 //! `--preset course` with `cast` gives the picture of the course's renderer, within a grey level.
 #![allow(clippy::print_stderr, reason = "a test that skips says so")]
 
+use bilux::gallery::teapot::Teapot;
 use bilux_math::Vec3;
-use bilux_scene::generators::teapot::Teapot;
 use bilux_scene::{AccelChoice, Mesh, Object, SceneBuilder, Spec, presets};
 use bilux_transport::{PixelAnchor, RenderSettings, Silent, integrators, render};
 use bilux_validation::course_oracle::{SIZE, course_picture};

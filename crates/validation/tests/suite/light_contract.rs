@@ -2,7 +2,7 @@
 
 use bilux_math::glam::DVec3;
 use bilux_math::{Aabb, DMat4, Motion, MotionKey, Quat, Rgb, Transform, Vec2, Vec3};
-use bilux_scene::generators::shapes::{cuboid, icosphere, quad};
+use bilux_scene::mesh::shapes::{cuboid, icosphere, quad};
 use bilux_scene::{
     AccelChoice, ClassicLight, ClassicLighting, EmissionSample, Goniometer, IntensityDistribution, LIGHTS,
     Light, LightSample, LightTracing, Mesh, Object, Primitive, SceneBuilder, Spec, Surface, Texture, Value,

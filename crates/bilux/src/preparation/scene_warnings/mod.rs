@@ -225,7 +225,7 @@ mod tests {
     use crate::Job;
     use bilux_math::Vec3;
     use bilux_scene::cameras::CameraSpec;
-    use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, Spec, Value, generators::shapes};
+    use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, Spec, Value, mesh::shapes};
     use std::sync::Arc;
 
     /// The warnings for a camera at this position, with a ball of this material at the origin.

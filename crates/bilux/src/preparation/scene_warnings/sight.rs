@@ -42,7 +42,7 @@ mod tests {
     use crate::Job;
     use bilux_math::{Transform, Vec3};
     use bilux_scene::cameras::CameraSpec;
-    use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, Spec, generators::shapes};
+    use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, Spec, mesh::shapes};
     use std::sync::Arc;
 
     /// Whether the camera of this spec is said to see none of a ball at the origin and a speck at (0, 0, -40).

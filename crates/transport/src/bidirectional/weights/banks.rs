@@ -6,7 +6,7 @@ use crate::shapes;
 use crate::techniques::TechniqueCounts;
 use bilux_math::{Aabb, Vec3};
 use bilux_scene::Spec;
-use bilux_scene::generators::shapes::cuboid;
+use bilux_scene::mesh::shapes::cuboid;
 use std::sync::Arc;
 
 /// Two banks of fog, with clear air around them and between: rays come into the second away from where they begin.

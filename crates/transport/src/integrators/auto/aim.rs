@@ -243,7 +243,7 @@ mod tests {
     /// Photons hardly ever fall within the footprints of small pixels.
     #[test]
     fn light_under_water_is_aimed_at_in_films_of_any_size() {
-        let scene = built(&bilux_scene::generators::generate(&Spec::new("", "pool")).unwrap());
+        let scene = built(&bilux_gallery::generate(&Spec::new("", "pool")).unwrap());
         let auto = integrators::build(&Spec::new("", "auto").with("techniques", "path-photons")).unwrap();
         for (width, height) in [(128, 96), (512, 384), (2048, 1536)] {
             for seed in 0..4 {

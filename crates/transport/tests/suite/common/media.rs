@@ -2,8 +2,8 @@
 
 use bilux_math::hash::{mix64, unit_f32};
 use bilux_math::{Aabb, Transform, Vec3};
-use bilux_scene::generators::shapes::cuboid;
 use bilux_scene::media::Grid;
+use bilux_scene::mesh::shapes::cuboid;
 use bilux_scene::{Mesh, Spec, Value};
 use std::sync::Arc;
 

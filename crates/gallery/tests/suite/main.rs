@@ -1,0 +1,3 @@
+//! The built-in scenes.
+
+mod generators;
