@@ -56,7 +56,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
     }
     say(&format!("writing the pages in {FOLDER} from the tables"));
     write(&pages()?)?;
-    say("writing the types of materials and lights, and the settings of requests");
+    say("writing the types of materials, lights and cameras, and the settings of requests");
     let types = &["test", "--quiet", "--locked", "--workspace", "--test", "suite", "typed::every_"];
     output(build::cargo(types).env("BILUX_WRITE_TYPES", "1"))?;
     say("writing the documentation of the libraries to target/doc");

@@ -18,8 +18,7 @@ pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
     scene.objects.push(Object::new("floor", Arc::new(floor), clay));
     scene.objects.push(Object::new("ball", Arc::new(ball), metal));
     scene.add_light(lights::Rect::new("panel").position(Vec3::new(0.0, 4.0, 1.0)).intensity(Rgb::grey(30.0)));
-    let camera = Spec::new("eye", "perspective").with("position", Vec3::new(0.0, 2.0, 6.0));
-    scene.cameras.push(CameraSpec::new(camera.with("look_at", Vec3::Y)));
+    scene.add_camera(cameras::Perspective::new("eye").position(Vec3::new(0.0, 2.0, 6.0)).look_at(Vec3::Y));
 
     let request = JobRequest::new().integrator("path").size(48, 32).spp(8);
     let picture = Job::new(&scene, request)?.render(&Quiet)?.picture()?;

@@ -88,7 +88,7 @@ pub mod prelude {
     pub use bilux_math::{Rgb, Transform, Vec2, Vec3};
     pub use bilux_pictures::Picture;
     pub use bilux_scene::cameras::CameraSpec;
-    pub use bilux_scene::typed::{lights, materials};
+    pub use bilux_scene::typed::{cameras, lights, materials};
     pub use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, Spec, Value};
 }
 

@@ -4,8 +4,8 @@
 use crate::{GeneratorEntry, integer};
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::cameras::CameraSpec;
 use bilux_scene::mesh::shapes;
+use bilux_scene::typed::cameras::Perspective;
 use bilux_scene::{Mesh, Object, SceneBuilder, Spec};
 use std::sync::Arc;
 
@@ -81,11 +81,11 @@ fn empty_room() -> (SceneBuilder, usize) {
             .with("classic", Rgb::new(0.9, 0.8, 0.6)),
     );
     room.lights.push(Spec::new("ambient", "ambient").with("colour", 0.25f32));
-    let eye = Spec::new("front", "perspective")
-        .with("position", Vec3::new(278.0, 273.0, -800.0) * MILLIMETRE)
-        .with("look_at", Vec3::new(278.0, 273.0, 0.0) * MILLIMETRE)
-        .with("fov", 39.3077f32);
-    room.cameras.push(CameraSpec { spec: eye, keyframes: Vec::new() });
+    let eye = Perspective::new("front")
+        .position(Vec3::new(278.0, 273.0, -800.0) * MILLIMETRE)
+        .look_at(Vec3::new(278.0, 273.0, 0.0) * MILLIMETRE)
+        .fov(39.3077f32);
+    room.add_camera(eye);
     (room, white)
 }
 

@@ -5,8 +5,8 @@ use crate::teapot::TESSELLATION;
 use crate::teapot::vessel::Vessel;
 use bilux_math::registry::{Entry, Parameter};
 use bilux_math::{DMat4, DVec3, Rgb, Transform, Vec3};
-use bilux_scene::cameras::CameraSpec;
 use bilux_scene::mesh::shapes;
+use bilux_scene::typed::cameras::Perspective;
 use bilux_scene::{Mesh, Object, SceneBuilder, Spec, Value};
 use std::sync::Arc;
 
@@ -36,11 +36,11 @@ pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
         place(&mut scene, "tea", &Arc::new(hollow.filling(0.56)), tea, [-0.12, 0.70], -16.0);
         floor(&mut scene);
         light(&mut scene);
-        let eye = Spec::new("front", "perspective")
-            .with("position", Vec3::new(0.25, 2.3, 6.6))
-            .with("look_at", Vec3::new(0.0, 0.41, 0.0))
-            .with("fov", 21.0f32);
-        scene.cameras.push(CameraSpec { spec: eye, keyframes: Vec::new() });
+        let eye = Perspective::new("front")
+            .position(Vec3::new(0.25, 2.3, 6.6))
+            .look_at(Vec3::new(0.0, 0.41, 0.0))
+            .fov(21.0);
+        scene.add_camera(eye);
         scene.settings.set("size", Value::from("960x540"));
         Ok(scene)
     },

@@ -14,6 +14,7 @@ const SHOWN: &[&str] = &[
     "crates/python/src/",
     "crates/cli/src/arguments/",
     "crates/bilux/src/request/settings.rs",
+    "crates/scene/src/typed/cameras.rs",
     "crates/scene/src/typed/lights.rs",
     "crates/scene/src/typed/materials.rs",
 ];

@@ -10,7 +10,7 @@ use crate::teapot::Teapot;
 use crate::{GeneratorEntry, integer};
 use bilux_math::registry::Entry;
 use bilux_math::{Aabb, Rgb, Vec3};
-use bilux_scene::cameras::CameraSpec;
+use bilux_scene::typed::cameras::Perspective;
 use bilux_scene::{Mesh, Object, SceneBuilder, Spec, Value};
 use furniture::TABLE;
 use std::sync::Arc;
@@ -295,11 +295,11 @@ impl Room {
             lights.push(panel(name, p, u, v, warm, dim));
         }
         lights.push(Spec::new("ambient", "ambient").with("colour", 0.25f32));
-        let eye = Spec::new("door", "perspective")
-            .with("position", Vec3::new(2.75, 1.58, 2.15))
-            .with("look_at", Vec3::new(-0.35, 0.92, -0.75))
-            .with("fov", 50.0f32);
-        self.scene.cameras.push(CameraSpec { spec: eye, keyframes: Vec::new() });
+        let eye = Perspective::new("door")
+            .position(Vec3::new(2.75, 1.58, 2.15))
+            .look_at(Vec3::new(-0.35, 0.92, -0.75))
+            .fov(50.0);
+        self.scene.add_camera(eye);
         self.scene.settings.set("size", Value::from("960x600"));
         self.scene
     }

@@ -10,8 +10,8 @@ use bilux_math::glam::UVec3;
 use bilux_math::registry::Entry;
 use bilux_math::transcendental::sin_cos;
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::cameras::CameraSpec;
 use bilux_scene::mesh::shapes;
+use bilux_scene::typed::cameras::Perspective;
 use bilux_scene::{Mesh, Object, SceneBuilder, Spec};
 use dragon::Dragon;
 use std::f32::consts::PI;
@@ -40,11 +40,11 @@ pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
         let stone = scene.add_material(stone);
         scene.objects.push(Object::new("floor", Arc::new(shapes::floor(Vec3::ZERO, 40.0)), stone));
         light(&mut scene);
-        let eye = Spec::new("front", "perspective")
-            .with("position", Vec3::new(1.5, 1.35, 2.6))
-            .with("look_at", Vec3::new(0.0, 0.5, 0.0))
-            .with("fov", 29.0f32);
-        scene.cameras.push(CameraSpec { spec: eye, keyframes: Vec::new() });
+        let eye = Perspective::new("front")
+            .position(Vec3::new(1.5, 1.35, 2.6))
+            .look_at(Vec3::new(0.0, 0.5, 0.0))
+            .fov(29.0);
+        scene.add_camera(eye);
         Ok(scene)
     },
 };

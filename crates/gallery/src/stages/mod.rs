@@ -21,7 +21,7 @@ mod tiles;
 use crate::modelling::parts::{between, joined, sharp};
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::cameras::CameraSpec;
+use bilux_scene::typed::cameras::Perspective;
 use bilux_scene::{Mesh, Object, SceneBuilder, Spec, Value};
 use std::sync::Arc;
 
@@ -100,11 +100,8 @@ impl Stage {
 
     /// Adds the camera: eye, target, and vertical field of view in degrees.
     fn seen(mut self, from: [f32; 3], to: [f32; 3], degrees: f32) -> SceneBuilder {
-        let eye = Spec::new("front", "perspective")
-            .with("position", Vec3::from(from))
-            .with("look_at", Vec3::from(to))
-            .with("fov", degrees);
-        self.scene.cameras.push(CameraSpec { spec: eye, keyframes: Vec::new() });
+        let eye = Perspective::new("front").position(Vec3::from(from)).look_at(Vec3::from(to)).fov(degrees);
+        self.scene.add_camera(eye);
         self.scene
     }
 }

@@ -127,6 +127,11 @@ impl SceneBuilder {
         self.lights.push(spec.into());
     }
 
+    /// Adds a camera that does not move.
+    pub fn add_camera(&mut self, spec: impl Into<Spec>) {
+        self.cameras.push(CameraSpec::new(spec));
+    }
+
     /// Adds a warning.
     pub fn warn(&mut self, message: impl Into<String>, at: Span) {
         self.warnings.push(Warning { message: message.into(), at });

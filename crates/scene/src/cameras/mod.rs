@@ -182,8 +182,8 @@ pub struct CameraSpec {
 
 impl CameraSpec {
     /// A camera that does not move.
-    pub fn new(spec: Spec) -> CameraSpec {
-        CameraSpec { spec, keyframes: Vec::new() }
+    pub fn new(spec: impl Into<Spec>) -> CameraSpec {
+        CameraSpec { spec: spec.into(), keyframes: Vec::new() }
     }
 
     /// The width and height in pixels of the pictures that it was calibrated with, if its parameters are in pixels.

@@ -1,23 +1,44 @@
 //! The types of `bilux_scene::typed`, and those of the makers in Python, match the tables, parameter by parameter.
 
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_math::{DVec3, Vec3};
 use bilux_scene::cameras::CAMERAS;
-use bilux_scene::{LIGHTS, MATERIALS};
+use bilux_scene::typed::cameras::{Opencv, Perspective};
+use bilux_scene::{LIGHTS, MATERIALS, Reader, Spec};
 use std::fmt::Write;
 
 /// Set by `cargo xtask docs`: files are written instead of compared.
 const WRITE: &str = "BILUX_WRITE_TYPES";
 
-fn source(what: &str, rows: impl Iterator<Item = Entry>) -> String {
+/// A kind of thing whose table has types.
+struct Kind {
+    name: &'static str,
+    /// The types of numbers and of vectors.
+    number: &'static str,
+    vector: &'static str,
+}
+
+const MATERIAL: Kind = Kind { name: "Materials", number: "f32", vector: "bilux_math::Vec3" };
+const LIGHT: Kind = Kind { name: "Lights", ..MATERIAL };
+
+/// Calibrations have more digits than f32.
+const CAMERA: Kind = Kind {
+    name: "Cameras",
+    number: "impl Into<f64> as super::number",
+    vector: "impl Into<bilux_math::DVec3> as super::vector",
+};
+
+fn source(kind: &Kind, rows: impl Iterator<Item = Entry>) -> String {
     let mut text = format!(
-        "//! {what} as Rust types. Generated from their table by `cargo xtask docs`; do not edit by hand.\n\ntyped! {{\n"
+        "//! {} as Rust types. Generated from their table by `cargo xtask docs`; do not edit by hand.\n\ntyped! {{\n",
+        kind.name
     );
     for row in rows {
         let _ = writeln!(text, "    /// {}.", documented(row.summary));
         let _ = writeln!(text, "    {} = \"{}\" {{", camel_case(row.name), row.name);
         for parameter in row.parameters {
             let _ = writeln!(text, "        /// {}.", about(parameter));
-            let _ = writeln!(text, "        {}: {},", parameter.name, rust_type(parameter.kind));
+            let _ = writeln!(text, "        {}: {},", parameter.name, rust_type(kind, parameter.kind));
         }
         text += "    }\n";
     }
@@ -29,13 +50,30 @@ fn about(parameter: &Parameter) -> String {
     if !parameter.unit.is_empty() {
         let _ = write!(about, " ({})", parameter.unit);
     }
-    if let ParameterKind::Choice(words) = parameter.kind {
-        let _ = write!(about, ": `{}`", words.join("`, `"));
-    }
+    about += &values(parameter.kind);
     match parameter.default {
         "" => about + "; it has to be given",
         default => about + &format!("; default `{default}`"),
     }
+}
+
+/// The values that are allowed, unless all are.
+fn values(kind: ParameterKind) -> String {
+    match kind {
+        ParameterKind::Choice(words) => format!(": `{}`", words.join("`, `")),
+        ParameterKind::Integer { min, max } => format!("; from {min} to {max}"),
+        ParameterKind::Number { min, max }
+        | ParameterKind::Colour { min, max }
+        | ParameterKind::ColourTexture { min, max }
+        | ParameterKind::NumberTexture { min, max }
+        | ParameterKind::Stops { min, max } => format!("; from {} to {}", short(min), short(max)),
+        _ => String::new(),
+    }
+}
+
+/// A bound, without long rows of zeros.
+fn short(x: f64) -> String {
+    if x == 0.0 || (1e-3..1e5).contains(&x.abs()) { x.to_string() } else { format!("{x:e}") }
 }
 
 /// Formats a line of documentation: it starts with a capital letter, and no bracket makes a link.
@@ -50,13 +88,13 @@ fn camel_case(name: &str) -> String {
     name.split('-').map(word).collect()
 }
 
-fn rust_type(kind: ParameterKind) -> &'static str {
-    match kind {
+fn rust_type(kind: &Kind, parameter: ParameterKind) -> &'static str {
+    match parameter {
         ParameterKind::Bool => "bool",
         ParameterKind::Integer { .. } => "i32",
-        ParameterKind::Number { .. } => "f32",
+        ParameterKind::Number { .. } => kind.number,
         ParameterKind::Colour { .. } => "bilux_math::Rgb",
-        ParameterKind::Vector => "bilux_math::Vec3",
+        ParameterKind::Vector => kind.vector,
         ParameterKind::Choice(_) | ParameterKind::Text => "&str",
         // A colour or a number, or a texture in its place; for the others, the value that file readers make.
         _ => "impl Into<crate::Value>",
@@ -174,9 +212,38 @@ fn every_maker_of_python_has_its_parameters() {
 }
 
 #[test]
-fn every_material_and_light_has_its_type() {
-    let materials = source("Materials", MATERIALS.iter().map(|row| row.entry));
+fn every_material_light_and_camera_has_its_type() {
+    let materials = source(&MATERIAL, MATERIALS.iter().map(|row| row.entry));
     compare("src/typed/materials.rs", include_str!("../../src/typed/materials.rs"), &materials);
-    let lights = source("Lights", LIGHTS.iter().map(|row| row.entry));
+    let lights = source(&LIGHT, LIGHTS.iter().map(|row| row.entry));
     compare("src/typed/lights.rs", include_str!("../../src/typed/lights.rs"), &lights);
+    let cameras = source(&CAMERA, CAMERAS.iter().map(|row| row.entry));
+    compare("src/typed/cameras.rs", include_str!("../../src/typed/cameras.rs"), &cameras);
+}
+
+#[test]
+fn a_typed_camera_is_the_one_written_by_hand() {
+    let typed = Perspective::new("eye")
+        .position(Vec3::new(0.1, 0.2, 3.0))
+        .fov(36.7f32)
+        .blades(5)
+        .stereo("over-under")
+        .mirrored(true);
+    let by_hand = Spec::new("eye", "perspective")
+        .with("position", Vec3::new(0.1, 0.2, 3.0))
+        .with("fov", 36.7f32)
+        .with("blades", 5)
+        .with("stereo", "over-under")
+        .with("mirrored", true);
+    assert_eq!(Spec::from(typed), by_hand);
+}
+
+#[test]
+fn a_typed_calibration_keeps_its_digits() {
+    let place = DVec3::new(6_378_137.125, -0.1, 1.0 / 3.0);
+    let spec = Spec::from(Opencv::new("left").fx(1234.567890123).k1(-0.1).position(place));
+    let row = CAMERAS.iter().find(|row| row.entry.name == "opencv").unwrap();
+    let reader = Reader::new(&spec, &row.entry).unwrap();
+    assert_eq!([reader.number_f64("fx"), reader.number_f64("k1")], [1234.567890123, -0.1]);
+    assert_eq!(reader.vector_f64("position"), place);
 }
