@@ -1,4 +1,4 @@
-//! What the models of the built-in scenes are made with: turned and rounded parts, and surfaces of implicit functions.
+//! Parts and tools of the models: turned and rounded shapes, sheets, and surfaces of implicit functions.
 
 pub(crate) mod implicit;
 pub(crate) mod isosurface;
