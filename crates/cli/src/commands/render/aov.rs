@@ -1,11 +1,11 @@
 //! `--aov`: what a render writes besides its picture.
 
+use super::input::Input;
 use super::lengths;
 use super::targets::is_stdout;
 use crate::arguments::assignments::from_flag;
 use crate::arguments::{Common, Render};
 use crate::commands::shared::progress::Report;
-use crate::process::interrupt::Interrupt;
 use crate::process::{output, usage};
 use anyhow::{Context, bail};
 use bilux::pictures::WriteOptions;
@@ -108,14 +108,13 @@ pub fn extra(
 
 /// Renders and writes the outputs besides the picture; returns false if it was stopped.
 pub fn write(
-    arguments: &Render,
+    input: &Input,
     job: &Job,
     outcome: &Outcome,
     output: &Path,
     layers: &Layers,
-    common: &Common,
-    interrupt: &Interrupt,
 ) -> anyhow::Result<bool> {
+    let Input { arguments, common, interrupt, .. } = *input;
     if let Some(interval) = &outcome.rendered.interval {
         write_interval(interval, outcome, output, common)?;
     }
@@ -132,7 +131,7 @@ pub fn write(
         return Ok(false);
     }
     if let Some(bins) = arguments.lengths.filter(|_| !outcome.rendered.cancelled)
-        && !lengths::write(bins, job, outcome, output, common, interrupt)?
+        && !lengths::write(input, bins, job, outcome, output)?
     {
         return Ok(false);
     }
