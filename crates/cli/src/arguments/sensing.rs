@@ -2,12 +2,12 @@
 
 use crate::arguments::assignments::value_of;
 use crate::arguments::help;
-use crate::arguments::tables::{OptionTable, TableOption, TableOptions, sentence};
+use crate::arguments::tables::{Assigned, OptionTable, TableOptions, sentence};
 use crate::arguments::values::{Exposure, parse_exposure, parse_quality};
 use bilux::math::registry::{Parameter, ParameterKind};
 use bilux::pictures::sensor::SENSOR;
 use bilux::tables::values;
-use clap::Args;
+use clap::{Arg, Args};
 use std::path::PathBuf;
 
 /// Make a picture of photons: what the sensor of a camera reads, with its noise
@@ -47,12 +47,12 @@ pub struct Sensor {
 pub struct OfSensor;
 
 impl OptionTable for OfSensor {
-    fn options() -> Vec<TableOption> {
-        SENSOR.parameters.iter().enumerate().map(|(place, parameter)| option(parameter, place)).collect()
+    fn options() -> Vec<Arg> {
+        SENSOR.parameters.iter().map(option).collect()
     }
 }
 
-fn option(parameter: &'static Parameter, place: usize) -> TableOption {
+fn option(parameter: &'static Parameter) -> Arg {
     let unit = if parameter.unit.is_empty() { String::new() } else { format!(" {}", parameter.unit) };
     let is_triple = matches!(parameter.kind, ParameterKind::Colour { .. });
     let (values, default) = (values(parameter.kind), parameter.default.replace(' ', ","));
@@ -64,19 +64,16 @@ fn option(parameter: &'static Parameter, place: usize) -> TableOption {
         ParameterKind::Integer { .. } => "N",
         _ => "X",
     };
-    TableOption {
-        parameter,
-        name: match parameter.name {
-            // `--output` is the file.
-            "output" => "output-kind".to_owned(),
-            name => name.replace('_', "-"),
-        },
-        short: None,
-        value: value.to_owned(),
-        missing: None,
-        heading: "Sensor",
-        place,
-        help: format!("{}; {values}{unit} [default: {default}]", sentence(parameter.summary)),
-        read: |parameter, text| Ok((parameter.name, value_of(text))),
-    }
+    let name = match parameter.name {
+        // `--output` is the file.
+        "output" => "output-kind".to_owned(),
+        name => name.replace('_', "-"),
+    };
+    Arg::new(name.clone())
+        .long(name)
+        .value_name(value)
+        .allow_hyphen_values(true)
+        .value_parser(move |text: &str| Ok::<Assigned, String>((parameter.name, value_of(text))))
+        .help_heading("Sensor")
+        .help(format!("{}; {values}{unit} [default: {default}]", sentence(parameter.summary)))
 }

@@ -4,7 +4,7 @@ pub(crate) mod settings;
 mod spelling;
 
 use crate::arguments::assignments::from_flag;
-use bilux::math::registry::{Parameter, ParameterKind};
+use crate::arguments::help::HEADINGS;
 use bilux::scene::{Parameters, Value};
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use std::marker::PhantomData;
@@ -14,38 +14,16 @@ pub trait OptionTable {
     /// Place of the options of the command that follow, under headings that they share with those of the table.
     const NEXT: usize = 100;
 
-    /// Its options, in the order of their headings.
-    fn options() -> Vec<TableOption>;
+    /// Its options, each of which reads [`Assigned`].
+    fn options() -> Vec<Arg>;
 }
 
-/// The options of a table that are given.
+/// What an option sets, which is its parameter or one that goes with it, and to what.
+pub type Assigned = (&'static str, Value);
+
+/// The parameters that options of a table give.
 #[derive(Clone)]
 pub struct TableOptions<T>(pub Parameters, PhantomData<T>);
-
-/// An option that gives a parameter.
-pub struct TableOption {
-    /// The parameter that it gives.
-    pub parameter: &'static Parameter,
-    /// Its name without the dashes.
-    pub name: String,
-    /// Its name of one letter.
-    pub short: Option<char>,
-    /// The name of its value.
-    pub value: String,
-    /// The value if none is written, which then has to follow an equals sign.
-    pub missing: Option<&'static str>,
-    /// The heading under which the help has it.
-    pub heading: &'static str,
-    /// Its place there.
-    pub place: usize,
-    /// What the help says of it.
-    pub help: String,
-    /// How its value is read.
-    pub read: Read,
-}
-
-/// Reads the value of an option: what it sets, which is its parameter or one that goes with it, and to what.
-pub type Read = fn(&'static Parameter, &str) -> Result<(&'static str, Value), String>;
 
 impl<T> TableOptions<T> {
     /// Whether an option sets this.
@@ -71,37 +49,13 @@ impl<T> TableOptions<T> {
     }
 }
 
-impl TableOption {
-    fn arg(&self) -> Arg {
-        let (parameter, read) = (self.parameter, self.read);
-        let arg = Arg::new(parameter.name)
-            .long(self.name.clone())
-            .short(self.short)
-            .value_name(self.value.clone())
-            .value_parser(move |text: &str| read(parameter, text))
-            .allow_hyphen_values(self.takes_hyphens())
-            .help_heading(self.heading)
-            .display_order(self.place)
-            .help(self.help.clone());
-        match self.missing {
-            Some(value) => arg.num_args(0..=1).default_missing_value(value).require_equals(true),
-            None => arg,
-        }
-    }
-
-    /// Whether what begins with a hyphen can be a value: a name does not, and so is the next option.
-    fn takes_hyphens(&self) -> bool {
-        match self.parameter.kind {
-            ParameterKind::Choice(words) => words.iter().any(|word| word.starts_with('-')),
-            ParameterKind::Text => !["NAME", "FILE"].iter().any(|name| self.value.contains(name)),
-            _ => true,
-        }
-    }
-}
-
 impl<T: OptionTable> Args for TableOptions<T> {
     fn augment_args(command: Command) -> Command {
-        command.args(T::options().iter().map(TableOption::arg)).next_display_order(T::NEXT)
+        let mut options = T::options();
+        // Headings appear in the help as they first do among the options.
+        let place = |option: &Arg| HEADINGS.iter().position(|name| Some(*name) == option.get_help_heading());
+        options.sort_by_key(place);
+        command.args(options).next_display_order(T::NEXT)
     }
 
     fn augment_args_for_update(command: Command) -> Command {
@@ -113,8 +67,9 @@ impl<T: OptionTable> FromArgMatches for TableOptions<T> {
     fn from_arg_matches(matches: &ArgMatches) -> Result<TableOptions<T>, clap::Error> {
         let mut given = Parameters::default();
         for option in T::options() {
-            if let Some((key, value)) = matches.get_one::<(&'static str, Value)>(option.parameter.name) {
-                given.set_at(key, value.clone(), from_flag(&format!("--{}", option.name)));
+            if let Some((key, value)) = matches.get_one::<Assigned>(option.get_id().as_str()) {
+                let flag = format!("--{}", option.get_long().unwrap_or_default());
+                given.set_at(key, value.clone(), from_flag(&flag));
             }
         }
         Ok(TableOptions(given, PhantomData))

@@ -1,37 +1,36 @@
 //! The options of settings: what follows from their rows, unless the table of spellings says otherwise.
 
-use super::spelling::spelling;
-use super::{OptionTable, TableOption, sentence};
+use super::spelling::spelled;
+use super::{Assigned, OptionTable, sentence};
 use crate::arguments::help;
 use bilux::math::registry::{Parameter, ParameterKind};
 use bilux::scene::Value;
 use bilux::settings::{Effect, ROWS, SettingRow};
 use bilux::tables::values;
 use bilux::transport::integrators::{INTEGRATORS, IntegratorEntry};
+use clap::Arg;
 
 /// The settings that say what of a scene is shown, and from where: commands that open one have their options.
 #[derive(Clone)]
 pub struct OfScene;
 
 /// The other settings, and some parameters of integrators, of which `bilux render` has the options.
-#[derive(Clone)]
 pub struct OfPicture;
 
 /// The parameters of integrators that have an option of their own.
 const OF_INTEGRATORS: [&str; 2] = ["specular", "shadow_rule"];
 
 impl OptionTable for OfScene {
-    fn options() -> Vec<TableOption> {
-        sorted(of_rows().filter(|(row, _)| is_of_scene(row)).map(|(_, option)| option).collect())
+    fn options() -> Vec<Arg> {
+        of_rows(is_of_scene).collect()
     }
 }
 
 impl OptionTable for OfPicture {
     const NEXT: usize = 2 * OfScene::NEXT;
 
-    fn options() -> Vec<TableOption> {
-        let own = of_rows().filter(|(row, _)| !is_of_scene(row)).map(|(_, option)| option);
-        sorted(own.chain(of_integrators()).collect())
+    fn options() -> Vec<Arg> {
+        of_rows(|row| !is_of_scene(row)).chain(of_integrators()).collect()
     }
 }
 
@@ -39,56 +38,50 @@ fn is_of_scene(row: &SettingRow) -> bool {
     row.effect == Effect::Scene || row.parameter.name == "time"
 }
 
-/// Headings appear in the help as they first do among the options.
-fn sorted(mut options: Vec<TableOption>) -> Vec<TableOption> {
-    options.sort_by_key(|option| help::HEADINGS.iter().position(|heading| *heading == option.heading));
-    options
-}
-
-/// The rows that have an option.
-fn of_rows() -> impl Iterator<Item = (&'static SettingRow, TableOption)> {
-    ROWS.iter().enumerate().filter_map(|(index, row)| {
-        let name = row.option?.trim_start_matches("--").to_owned();
-        let plain = Plain { name, heading: heading(row.effect), help: sentence(row.parameter.summary) };
-        // Behind the picture that is written.
-        Some((row, option(&row.parameter, plain, index + 1)))
+/// The options of some of the rows.
+fn of_rows(has: fn(&SettingRow) -> bool) -> impl Iterator<Item = Arg> {
+    // Behind the picture that is written.
+    let rows = (1..).zip(ROWS).filter(move |(_, row)| has(row));
+    rows.filter_map(|(place, row)| {
+        let about = sentence(row.parameter.summary);
+        let option = option(&row.parameter, row.option?.trim_start_matches("--"), about);
+        Some(spelled(option.help_heading(heading(row.effect)).display_order(place)))
     })
 }
 
 /// The options of parameters of integrators, each of which says whose they are.
-fn of_integrators() -> impl Iterator<Item = TableOption> {
-    OF_INTEGRATORS.iter().enumerate().filter_map(|(index, name)| {
-        let has = |row: &&IntegratorEntry| row.entry.parameters.iter().any(|own| own.name == *name);
+fn of_integrators() -> impl Iterator<Item = Arg> {
+    (ROWS.len() + 1..).zip(OF_INTEGRATORS).filter_map(|(place, name)| {
+        let has = |row: &&IntegratorEntry| row.entry.parameters.iter().any(|own| own.name == name);
         let owners: Vec<_> = INTEGRATORS.iter().filter(has).map(|row| &row.entry).collect();
-        let parameter = owners.first()?.parameters.iter().find(|own| own.name == *name)?;
+        let parameter = owners.first()?.parameters.iter().find(|own| own.name == name)?;
         let owners: Vec<String> = owners.iter().map(|entry| format!("`{}`", entry.name)).collect();
-        let help = format!("{}; for {}", sentence(parameter.summary), owners.join(", "));
-        let plain = Plain { name: name.replace('_', "-"), heading: help::LIGHT, help };
-        Some(option(parameter, plain, ROWS.len() + index))
+        let about = format!("{}; for {}", sentence(parameter.summary), owners.join(", "));
+        let option = option(parameter, &name.replace('_', "-"), about);
+        Some(option.help_heading(help::LIGHT).display_order(place))
     })
 }
 
-/// What an option has unless its spelling has something else.
-struct Plain {
-    name: String,
-    heading: &'static str,
-    help: String,
-}
-
-fn option(parameter: &'static Parameter, plain: Plain, place: usize) -> TableOption {
-    let spelling = spelling(parameter.name);
-    let help = || format!("{} [default: {}]", plain.help, parameter.default);
-    TableOption {
-        parameter,
-        name: plain.name,
-        short: spelling.short,
-        value: spelling.value.map_or_else(|| value_name(parameter), str::to_owned),
-        missing: spelling.missing,
-        heading: spelling.heading.unwrap_or(plain.heading),
-        place,
-        help: spelling.help.map_or_else(help, str::to_owned),
-        read: spelling.read.unwrap_or(read),
-    }
+fn option(parameter: &'static Parameter, name: &str, about: String) -> Arg {
+    let (value, takes_hyphens) = match (parameter.kind, parameter.unit) {
+        (ParameterKind::Bool, _) => ("true|false".to_owned(), false),
+        (ParameterKind::Choice(words), _) => {
+            (words.join("|"), words.iter().any(|word| word.starts_with('-')))
+        }
+        // The name of something: what begins with a hyphen is the next option.
+        (ParameterKind::Text, _) => ("NAME".to_owned(), false),
+        (ParameterKind::Integer { .. }, _) => ("N".to_owned(), true),
+        (_, "s") => ("SECONDS".to_owned(), true),
+        (_, "m") => ("METRES".to_owned(), true),
+        (_, "") => ("X".to_owned(), true),
+        (_, unit) => (unit.to_uppercase(), true),
+    };
+    Arg::new(parameter.name)
+        .long(name.to_owned())
+        .value_name(value)
+        .allow_hyphen_values(takes_hyphens)
+        .value_parser(move |text: &str| read(parameter, text))
+        .help(format!("{about} [default: {}]", parameter.default))
 }
 
 /// The heading of a setting's option.
@@ -102,24 +95,8 @@ fn heading(effect: Effect) -> &'static str {
     }
 }
 
-/// The name of a value.
-fn value_name(parameter: &Parameter) -> String {
-    let name = match (parameter.kind, parameter.unit) {
-        (ParameterKind::Choice(_) | ParameterKind::Bool, _) => {
-            return values(parameter.kind).replace(" or ", "|");
-        }
-        (ParameterKind::Text, _) => "NAME",
-        (ParameterKind::Integer { .. }, _) => "N",
-        (_, "s") => "SECONDS",
-        (_, "m") => "METRES",
-        (_, "mm") => "MM",
-        _ => "X",
-    };
-    name.to_owned()
-}
-
 /// Reads a value of the row's kind. Whether a word or a text names something is checked with all other settings.
-fn read(parameter: &'static Parameter, text: &str) -> Result<(&'static str, Value), String> {
+fn read(parameter: &'static Parameter, text: &str) -> Result<Assigned, String> {
     let (value, what) = match parameter.kind {
         ParameterKind::Bool => (text.parse().ok().map(Value::Bool), ""),
         ParameterKind::Integer { min, max } => {
