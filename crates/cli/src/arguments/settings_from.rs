@@ -31,11 +31,10 @@ pub fn explain(arguments: &Explain) -> anyhow::Result<Parameters> {
 
 /// The settings that options give, and those of `--set`.
 fn all(studio: &StudioArguments, mut parameters: Parameters, set: &[String]) -> anyhow::Result<Parameters> {
-    let of_scene = studio.settings.0.0.iter().cloned();
     // A picture is no setting.
-    parameters
-        .0
-        .extend(of_scene.filter(|(key, ..)| key != "background" || studio.picture_behind().is_none()));
+    let is_setting = |key: &str| key != "background" || studio.picture_behind().is_none();
+    let of_scene = studio.settings.0.0.iter().filter(|(key, ..)| is_setting(key));
+    parameters.0.extend(of_scene.cloned());
     for assignment in set {
         let (key, value) = assignment_of(assignment)?;
         parameters.set_at(&key, value, from_flag(&format!("--set {key}")));
