@@ -1,11 +1,11 @@
 //! `--aov`: what a render writes besides its picture.
 
-use super::input::Input;
 use super::lengths;
 use super::targets::is_stdout;
 use crate::arguments::assignments::from_flag;
 use crate::arguments::{Common, Render};
 use crate::commands::shared::progress::Report;
+use crate::process::interrupt::Interrupt;
 use crate::process::{output, usage};
 use anyhow::{Context, bail};
 use bilux::pictures::WriteOptions;
@@ -108,13 +108,14 @@ pub fn extra(
 
 /// Renders and writes the outputs besides the picture; returns false if it was stopped.
 pub fn write(
-    input: &Input,
+    arguments: &Render,
     job: &Job,
     outcome: &Outcome,
     output: &Path,
     layers: &Layers,
+    common: &Common,
+    interrupt: &Interrupt,
 ) -> anyhow::Result<bool> {
-    let Input { arguments, common, interrupt, .. } = *input;
     if let Some(interval) = &outcome.rendered.interval {
         write_interval(interval, outcome, output, common)?;
     }
@@ -131,7 +132,7 @@ pub fn write(
         return Ok(false);
     }
     if let Some(bins) = arguments.lengths.filter(|_| !outcome.rendered.cancelled)
-        && !lengths::write(input, bins, job, outcome, output)?
+        && !lengths::write(bins, job, outcome, output, common, interrupt)?
     {
         return Ok(false);
     }

@@ -59,7 +59,7 @@ pub fn finish(input: &Input, job: &Job, target: &Target, build_seconds: f64) -> 
     let is_whole = !outcome.rendered.cancelled && denoising != Denoising::CutShort;
     let overrun = time_limit::overrun(job, &outcome, [before, rendered, input.begun.get().elapsed()]);
     log::report_sample_failures(&outcome);
-    let all_aovs = aov::write(input, job, &outcome, output, &layers)?;
+    let all_aovs = aov::write(arguments, job, &outcome, output, &layers, common, interrupt)?;
     let rendered = log::Rendered {
         job,
         outcome: &outcome,

@@ -1,7 +1,8 @@
 //! `--lengths`: the light of a picture in intervals of the optical length of paths.
 
-use super::input::Input;
+use crate::arguments::Common;
 use crate::commands::shared::progress::Report;
+use crate::process::interrupt::Interrupt;
 use crate::process::output;
 use bilux::math::Rgb;
 use bilux::pictures::{Picture, WriteOptions};
@@ -15,15 +16,16 @@ pub const EXTENSION: &str = "lengths.exr";
 /// Takes the samples of the picture again, and writes `OUT.lengths.exr`: a layer for each interval, the layer `rest`, and all of them together
 /// as the main picture. Returns false if it was stopped.
 pub fn write(
-    input: &Input,
     bins: LengthBins,
     job: &Job,
     outcome: &Outcome,
     output: &Path,
+    common: &Common,
+    interrupt: &Interrupt,
 ) -> anyhow::Result<bool> {
     let path = output.with_extension(EXTENSION);
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let report = Report::new(&name, input.common, input.interrupt.clone());
+    let report = Report::new(&name, common, interrupt.clone());
     let found = job.transient(bins, outcome.rendered.reached.map(|reached| reached.spp), &report)?;
     let seconds = report.finish();
     let Some(found) = found else {
@@ -45,7 +47,7 @@ pub fn write(
     let LengthBins { begin, width, .. } = bins;
     picture.metadata.insert("bilux.lengths".to_owned(), format!("{begin},{width},{count}"));
     bilux::pictures::write(&path, &picture, &WriteOptions::default())?;
-    if !input.common.quiet {
+    if !common.quiet {
         output::eprint(format_args!("{}: {count} intervals of {width} m, {seconds:.2} s", path.display()));
     }
     Ok(true)
