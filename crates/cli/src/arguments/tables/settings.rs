@@ -63,7 +63,7 @@ fn of_integrators() -> impl Iterator<Item = Arg> {
 }
 
 fn option(parameter: &'static Parameter, name: &str, about: String) -> Arg {
-    let (value, takes_hyphens) = match (parameter.kind, parameter.unit) {
+    let (value, takes_hyphens) = match (parameter.kind, unit(parameter)) {
         (ParameterKind::Bool, _) => ("true|false".to_owned(), false),
         (ParameterKind::Choice(words), _) => {
             (words.join("|"), words.iter().any(|word| word.starts_with('-')))
@@ -71,8 +71,6 @@ fn option(parameter: &'static Parameter, name: &str, about: String) -> Arg {
         // The name of something: what begins with a hyphen is the next option.
         (ParameterKind::Text, _) => ("NAME".to_owned(), false),
         (ParameterKind::Integer { .. }, _) => ("N".to_owned(), true),
-        (_, "s") => ("SECONDS".to_owned(), true),
-        (_, "m") => ("METRES".to_owned(), true),
         (_, "") => ("X".to_owned(), true),
         (_, unit) => (unit.to_uppercase(), true),
     };
@@ -97,19 +95,32 @@ fn heading(effect: Effect) -> &'static str {
 
 /// Reads a value of the row's kind. Whether a word or a text names something is checked with all other settings.
 fn read(parameter: &'static Parameter, text: &str) -> Result<Assigned, String> {
-    let (value, what) = match parameter.kind {
+    let (value, number) = match parameter.kind {
         ParameterKind::Bool => (text.parse().ok().map(Value::Bool), ""),
         ParameterKind::Integer { min, max } => {
             let number = text.parse().ok().filter(|number| (min..=max).contains(number));
-            (number.map(Value::Integer), "a whole number from ")
+            (number.map(Value::Integer), "a whole number")
         }
         ParameterKind::Number { min, max } => {
             let number = text.parse().ok().filter(|number: &f32| (min..=max).contains(&f64::from(*number)));
-            (number.map(Value::from), "a number from ")
+            (number.map(Value::from), "a number")
         }
         _ => (Some(Value::from(text)), ""),
     };
-    let unit = if parameter.unit.is_empty() { String::new() } else { format!(", in {}", parameter.unit) };
-    let advice = || format!("write {what}{}{unit}", values(parameter.kind));
+    let values = values(parameter.kind);
+    let advice = || match (number, unit(parameter)) {
+        ("", _) => format!("write {values}"),
+        (_, "") => format!("write {number} from {values}"),
+        (_, unit) => format!("write {number} of {unit} from {values}"),
+    };
     Ok((parameter.name, value.ok_or_else(advice)?))
+}
+
+/// The unit of a number as a word.
+fn unit(parameter: &Parameter) -> &'static str {
+    match parameter.unit {
+        "s" => "seconds",
+        "m" => "metres",
+        unit => unit,
+    }
 }
