@@ -14,8 +14,10 @@ pub(super) fn spelled(option: Arg) -> Arg {
     }
 }
 
-/// Settings, and what their options have.
-const SPELLINGS: &[(&str, fn(Arg) -> Arg)] = &[
+/// A setting, and what its option has.
+type Spelling = (&'static str, fn(Arg) -> Arg);
+
+const SPELLINGS: &[Spelling] = &[
     ("integrator", |option| option.short('i').help_heading(help::COMMON_OPTIONS)),
     ("size", |option| coordinates(option, "WxH").help_heading(help::COMMON_OPTIONS)),
     ("spp", |option| {
