@@ -73,9 +73,15 @@ const PARAMETERS: [Parameter; ROWS.len()] = {
 
 /// The rows of [`RENDER`], each with its effect.
 pub static ROWS: &[SettingRow] = &[
-    row(Samples, text("integrator", "the light-transport algorithm", "auto")).by("--integrator"),
-    row(Building, text("accel", "the acceleration structure for ray queries", "auto")).by("--accel"),
-    row(Samples, text("size", "width and height of the picture, as WxH", "512x512")).by("--size"),
+    row(
+        Samples,
+        text("integrator", "the algorithm that computes the light (`bilux list integrators`)", "auto"),
+    )
+    .by("--integrator"),
+    row(Building, text("accel", "the acceleration structure for ray queries (`bilux list accels`)", "auto"))
+        .by("--accel"),
+    row(Samples, text("size", "the width and height of the picture in pixels, as WxH", "512x512"))
+        .by("--size"),
     row(Count, integer("spp", "samples per pixel; 0 for the integrator's own choice", 0, 1 << 31, "0"))
         .by("--spp"),
     row(
@@ -117,16 +123,16 @@ pub static ROWS: &[SettingRow] = &[
         Samples,
         integer(
             "max_depth",
-            "maximum number of scattering events after the camera; those inside skin and milk do not \
-             count; 0 is emission only; 100 with `fog`, if nothing is said",
+            "the maximum number of bounces after the camera; those inside skin and milk do not count; 0 \
+             shows only emitters; if nothing is said, 100 with `fog`, and 8 with --fast",
             0,
             MAX_DEPTH as i64,
             "16",
         ),
     )
     .by("--max-depth"),
-    row(Work, integer("threads", "number of threads; 0 uses all cores", 0, 4096, "0")).by("--threads"),
-    row(Samples, text("camera", "name or number of the camera", "0")).by("--camera"),
+    row(Work, integer("threads", "the number of threads; 0 uses all cores", 0, 4096, "0")).by("--threads"),
+    row(Samples, text("camera", "the camera of the scene, by name or by number from 0", "0")).by("--camera"),
     row(
         Scene,
         text(
@@ -146,20 +152,36 @@ pub static ROWS: &[SettingRow] = &[
     )
     .by("--look-at"),
     row(Scene, number("zoom", "magnify the picture by this factor", "", 1e-3, 1e3, "1")).by("--zoom"),
-    row(Scene, choice("ground", "what a model without a camera and lights stands on", GROUNDS, "auto"))
-        .by("--ground"),
+    row(
+        Scene,
+        choice(
+            "ground",
+            "what the model stands on: an invisible ground that shows only its shadow, a mirror, or \
+             nothing; auto is a matte backdrop, if the file has neither camera nor lights",
+            GROUNDS,
+            "auto",
+        ),
+    )
+    .by("--ground"),
     // Deeper paths too, unless `max_depth` is said.
     row(
         Scene,
-        number("fog", "fog around everything, and how far one sees in it; 0 is none", "m", 0.0, 1e6, "0"),
+        number(
+            "fog",
+            "put fog around everything, in which people see this far; 0 is none",
+            "m",
+            0.0,
+            1e6,
+            "0",
+        ),
     )
     .by("--fog"),
     row(
         Scene,
         text(
             "orbit",
-            "the position of the studio's camera: degrees to the right of the model's front and \
-             degrees above it, as AZ,EL",
+            "look from AZ degrees to the right of the model's front and EL degrees above it, as AZ,EL; if \
+             nothing is said, at a flat model from up to 40 degrees above",
             "26.5,17.8",
         ),
     )
@@ -171,14 +193,20 @@ pub static ROWS: &[SettingRow] = &[
     .by("--up"),
     row(
         Scene,
-        choice("front", "the model's front axis; auto infers it from the format and the shape", AXES, "auto"),
+        choice(
+            "front",
+            "the model's front axis, the side that the studio's camera sees; auto infers it from the \
+             format and the shape",
+            AXES,
+            "auto",
+        ),
     )
     .by("--front"),
     row(
         Scene,
         number(
             "focal",
-            "focal length of the studio's camera, for a picture 24 mm high",
+            "the focal length of the studio's camera, for a picture 24 mm high",
             "mm",
             1.0,
             10_000.0,
@@ -186,7 +214,7 @@ pub static ROWS: &[SettingRow] = &[
         ),
     )
     .by("--focal"),
-    row(Samples, number("time", "the time that the picture shows", "s", -1e9, 1e9, "0")).by("--at"),
+    row(Samples, number("time", "the time to show, for animated scenes", "s", -1e9, 1e9, "0")).by("--at"),
     row(Samples, number("shutter", "how long the shutter is open", "s", 0.0, 1e9, "0")),
     row(
         Samples,
@@ -250,8 +278,8 @@ pub static ROWS: &[SettingRow] = &[
         Display,
         text(
             "tonemap",
-            "the tone-mapping curve for display formats; auto is neutral if the studio lights the \
-             model, unless all of it is unlit, else none",
+            "the tone-mapping curve for display formats (`bilux list tonemaps`); auto is \
+             neutral if the studio lights the model, unless all of it is unlit, else none",
             "auto",
         ),
     )
@@ -279,8 +307,8 @@ pub static ROWS: &[SettingRow] = &[
         Building,
         choice(
             "build",
-            "how much time building the tree may take; auto is best for bvh8 from 64 samples per \
-             triangle on, else balanced",
+            "how much time building the acceleration structure may take; auto is best for \
+             bvh8 from 64 samples per triangle on, else balanced",
             &["auto", "fast", "balanced", "best"],
             "auto",
         ),
@@ -295,13 +323,13 @@ pub static ROWS: &[SettingRow] = &[
             "auto",
         ),
     ),
-    row(Building, choice("bsp_split", "how bsp chooses its planes", &["mean", "fuchs"], "mean"))
+    row(Building, choice("bsp_split", "how `bsp` chooses its splitting planes", &["mean", "fuchs"], "mean"))
         .by("--bsp-split"),
     row(
         Building,
         choice(
             "bsp_group",
-            "whether bsp groups polygons or whole objects",
+            "whether `bsp` groups polygons or whole objects",
             &["polygons", "objects"],
             "polygons",
         ),

@@ -1,6 +1,6 @@
 //! The options of `bilux explain`.
 
-use crate::arguments::choices::Posed;
+use crate::arguments::choices::Choices;
 use crate::arguments::help;
 use crate::arguments::studio::StudioArguments;
 use clap::Args;
@@ -26,5 +26,8 @@ pub struct Explain {
     #[command(flatten)]
     pub studio: StudioArguments,
     #[command(flatten)]
-    pub posed: Posed,
+    pub choices: Choices,
+    /// The format of the scene on standard input; auto detects it from the first bytes
+    #[arg(long, value_name = "NAME|auto", default_value = "auto", help_heading = help::WHAT)]
+    pub input_format: String,
 }

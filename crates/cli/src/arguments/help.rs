@@ -20,5 +20,8 @@ pub const FILES: &str = "Files";
 /// The heading of options for what is written and printed.
 pub const OUTPUT: &str = "Output";
 
+/// Headings in the order of the help.
+pub const HEADINGS: [&str; 8] = [COMMON_OPTIONS, STUDIO, WHAT, LIGHT, PICTURE, SPEED, OUTPUT, FILES];
+
 /// The place of the options of every command: after the command's own under the same heading.
 pub const LAST: usize = 900;

@@ -16,6 +16,7 @@ pub(crate) mod serving;
 pub(crate) mod settings_from;
 pub(crate) mod streams;
 pub(crate) mod studio;
+pub(crate) mod tables;
 pub(crate) mod values;
 pub(crate) mod version;
 pub(crate) mod working;

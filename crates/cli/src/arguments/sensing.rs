@@ -1,13 +1,13 @@
 //! The options of `bilux sensor`. Those of the sensor come from its row of parameters.
 
-use crate::arguments::assignments::{from_flag, value_of};
+use crate::arguments::assignments::value_of;
 use crate::arguments::help;
+use crate::arguments::tables::{Assigned, OptionTable, TableOptions, sentence};
 use crate::arguments::values::{Exposure, parse_exposure, parse_quality};
-use bilux::math::registry::ParameterKind;
+use bilux::math::registry::{Parameter, ParameterKind};
 use bilux::pictures::sensor::SENSOR;
-use bilux::scene::Parameters;
 use bilux::tables::values;
-use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
+use clap::{Arg, Args};
 use std::path::PathBuf;
 
 /// Make a picture of photons: what the sensor of a camera reads, with its noise
@@ -29,7 +29,7 @@ pub struct Sensor {
     #[arg(long, value_name = "NAME", help_heading = help::PICTURE)]
     pub layer: Option<String>,
     #[command(flatten)]
-    pub sensor: SensorParameters,
+    pub sensor: TableOptions<OfSensor>,
     /// Brighten display formats by this many stops (powers of two), or automatically to the brightness of a photograph; raw
     /// numbers stay as they are
     #[arg(long, value_name = "EV|auto", allow_hyphen_values = true, default_value = "0",
@@ -43,64 +43,37 @@ pub struct Sensor {
     pub quality: Option<u8>,
 }
 
-/// The parameters of the sensor that are given.
-pub struct SensorParameters(pub Parameters);
+/// The parameters of the sensor.
+pub struct OfSensor;
 
-/// The heading of the sensor's options.
-const HEADING: &str = "Sensor";
+impl OptionTable for OfSensor {
+    fn options() -> Vec<Arg> {
+        SENSOR.parameters.iter().map(option).collect()
+    }
+}
 
-/// The name of a parameter's option.
-fn flag(parameter: &str) -> String {
-    match parameter {
+fn option(parameter: &'static Parameter) -> Arg {
+    let unit = if parameter.unit.is_empty() { String::new() } else { format!(" {}", parameter.unit) };
+    let is_triple = matches!(parameter.kind, ParameterKind::Colour { .. });
+    let (values, default) = (values(parameter.kind), parameter.default.replace(' ', ","));
+    let default = if is_triple { default } else { parameter.default.to_owned() };
+    let values = values.strip_prefix("colour ").map_or(values.clone(), |range| format!("each {range}"));
+    let value = match parameter.kind {
+        ParameterKind::Colour { .. } => "R,G,B",
+        ParameterKind::Choice(_) => "NAME",
+        ParameterKind::Integer { .. } => "N",
+        _ => "X",
+    };
+    let name = match parameter.name {
         // `--output` is the file.
         "output" => "output-kind".to_owned(),
         name => name.replace('_', "-"),
-    }
-}
-
-impl Args for SensorParameters {
-    fn augment_args(command: Command) -> Command {
-        SENSOR.parameters.iter().fold(command, |command, parameter| {
-            let unit = if parameter.unit.is_empty() { String::new() } else { format!(" {}", parameter.unit) };
-            let is_triple = matches!(parameter.kind, ParameterKind::Colour { .. });
-            let (values, default) = (values(parameter.kind), parameter.default.replace(' ', ","));
-            let default = if is_triple { default } else { parameter.default.to_owned() };
-            let values =
-                values.strip_prefix("colour ").map_or(values.clone(), |range| format!("each {range}"));
-            let mut summary = parameter.summary.to_owned();
-            summary[..1].make_ascii_uppercase();
-            let help = format!("{summary}; {values}{unit} [default: {default}]");
-            let name = match parameter.kind {
-                ParameterKind::Colour { .. } => "R,G,B",
-                ParameterKind::Choice(_) => "NAME",
-                ParameterKind::Integer { .. } => "N",
-                _ => "X",
-            };
-            let option =
-                Arg::new(flag(parameter.name)).long(flag(parameter.name)).value_name(name).help(help);
-            command.arg(option.allow_hyphen_values(true).help_heading(HEADING))
-        })
-    }
-
-    fn augment_args_for_update(command: Command) -> Command {
-        SensorParameters::augment_args(command)
-    }
-}
-
-impl FromArgMatches for SensorParameters {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<SensorParameters, clap::Error> {
-        let mut given = Parameters::default();
-        for parameter in SENSOR.parameters {
-            let flag = flag(parameter.name);
-            if let Some(text) = matches.get_one::<String>(&flag) {
-                given.set_at(parameter.name, value_of(text), from_flag(&format!("--{flag}")));
-            }
-        }
-        Ok(SensorParameters(given))
-    }
-
-    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
-        *self = SensorParameters::from_arg_matches(matches)?;
-        Ok(())
-    }
+    };
+    Arg::new(name.clone())
+        .long(name)
+        .value_name(value)
+        .allow_hyphen_values(true)
+        .value_parser(move |text: &str| Ok::<Assigned, String>((parameter.name, value_of(text))))
+        .help_heading("Sensor")
+        .help(format!("{}; {values}{unit} [default: {default}]", sentence(parameter.summary)))
 }

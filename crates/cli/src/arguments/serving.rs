@@ -34,9 +34,6 @@ pub struct Serve {
     /// Let viewers change materials, lights and cameras, and drop in other files; the scene file is not modified
     #[arg(long, help_heading = help::COMMON_OPTIONS)]
     pub edit: bool,
-    /// The time to show, in seconds, for animated scenes [default: 0]
-    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = crate::arguments::values::parse_time, help_heading = help::WHAT)]
-    pub at: Option<f32>,
     /// Change any setting of the picture (`bilux list settings`)
     #[arg(long = "set", value_name = "KEY=VALUE", help_heading = help::PICTURE)]
     pub set: Vec<String>,

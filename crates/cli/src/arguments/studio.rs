@@ -2,7 +2,8 @@
 
 use crate::arguments::assignments::{change_of, from_flag};
 use crate::arguments::help;
-use crate::arguments::values::{parse_focal, parse_metres, parse_zoom};
+use crate::arguments::tables::TableOptions;
+use crate::arguments::tables::settings::OfScene;
 use crate::process::usage;
 use anyhow::{Context, bail};
 use bilux::formats::ReadOptions;
@@ -14,19 +15,8 @@ use std::path::{Path, PathBuf};
 /// The camera and the surroundings of a model.
 #[derive(Args, Clone)]
 pub struct StudioArguments {
-    /// Look from AZ degrees to the right of the model's front and EL degrees above it [default: 26.5,17.8; a flat
-    /// model from up to 40 degrees above]
-    #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true, help_heading = help::COMMON_OPTIONS)]
-    pub orbit: Option<String>,
-    /// Move the camera to this point
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, help_heading = help::STUDIO)]
-    pub eye: Option<String>,
-    /// Turn the camera to this point
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, help_heading = help::STUDIO)]
-    pub look_at: Option<String>,
-    /// Magnify the picture by this factor [default: 1]
-    #[arg(long, value_name = "FACTOR", allow_hyphen_values = true, value_parser = parse_zoom, help_heading = help::STUDIO)]
-    pub zoom: Option<f32>,
+    #[command(flatten)]
+    pub settings: TableOptions<OfScene>,
     /// Take pictures with calibrated cameras in place of the scene's: a file of OpenCV (YAML or JSON, also of ROS or Kalibr), COLMAP's
     /// images.txt or cameras.txt (or .bin), or transforms.json; --camera says which one
     #[arg(long, value_name = "FILE", help_heading = help::STUDIO)]
@@ -39,29 +29,9 @@ pub struct StudioArguments {
     /// The layer of the pictures of --env and --background, of an EXR that has several [default: its main picture]
     #[arg(long, value_name = "NAME", help_heading = help::STUDIO)]
     pub layer: Option<String>,
-    /// The background: transparent, a colour (white, grey, black, '#rrggbb' or R,G,B from 0 to 1) or a picture; it
-    /// lights nothing [default: the scene's surroundings]
-    #[arg(long, value_name = "transparent|COLOR|FILE", help_heading = help::COMMON_OPTIONS)]
-    pub background: Option<String>,
-    /// The model's up axis: x, y, z, -x, -y or -z [default: auto, from its format and its shape]
-    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, help_heading = help::STUDIO)]
-    pub up: Option<String>,
-    /// The model's front axis, the side that the studio's camera sees [default: auto, from its format and its shape]
-    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, help_heading = help::STUDIO)]
-    pub front: Option<String>,
     /// A preset for the studio's camera (`bilux list presets`)
     #[arg(long, value_name = "NAME", help_heading = help::STUDIO)]
     pub preset: Option<String>,
-    /// The focal length of the studio's camera in mm, for a picture 24 mm high [default: 45]
-    #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = parse_focal, help_heading = help::STUDIO)]
-    pub focal: Option<f32>,
-    /// What the model stands on: an invisible ground that shows only its shadow, a mirror, or nothing [default: a matte
-    /// backdrop, if the file has neither camera nor lights]
-    #[arg(long, value_name = "shadow|mirror|none", help_heading = help::STUDIO)]
-    pub ground: Option<String>,
-    /// Put fog around everything, in which people see this many metres far
-    #[arg(long, value_name = "METRES", allow_hyphen_values = true, value_parser = parse_metres, help_heading = help::STUDIO)]
-    pub fog: Option<f32>,
     /// Change a parameter of a material, a light or a camera, named by its name or by its number from 0, such as
     /// light:0:intensity=5 or material:Paint:base_color=0.8,0,0
     #[arg(long = "change", value_name = "PART:NAME:KEY=VALUE", help_heading = help::WHAT)]
@@ -92,6 +62,11 @@ impl StudioArguments {
         Ok(())
     }
 
+    /// The time that is shown, in seconds.
+    pub fn time(&self) -> f32 {
+        self.settings.number("time").unwrap_or(0.0)
+    }
+
     /// These options with another environment, if there is one.
     pub fn with_env(&self, env: Option<PathBuf>) -> StudioArguments {
         StudioArguments { env: env.or(self.env.clone()), ..self.clone() }
@@ -105,7 +80,7 @@ impl StudioArguments {
     /// The background if it is a picture instead of a colour.
     pub fn picture_behind(&self) -> Option<&Path> {
         let is_setting = |text: &str| Background::parse(text).is_some() || text.starts_with('#');
-        self.background.as_deref().filter(|text| !is_setting(text)).map(Path::new)
+        self.settings.text("background").filter(|text| !is_setting(text)).map(Path::new)
     }
 
     /// Refuses a background that is neither a setting nor the name of a picture, and changes that cannot be read.
@@ -140,11 +115,6 @@ impl StudioArguments {
             }
         }
         Ok(())
-    }
-
-    /// The background if it is a setting.
-    pub fn background(&self) -> Option<String> {
-        self.background.clone().filter(|_| self.picture_behind().is_none())
     }
 }
 

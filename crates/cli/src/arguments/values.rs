@@ -83,30 +83,9 @@ pub fn parse_maintenance(text: &str) -> Result<f32, String> {
     factor.ok_or_else(|| "write a number above 0 and at most 1, such as 0.8".to_owned())
 }
 
-/// Parses a focal length in millimetres.
-pub fn parse_focal(text: &str) -> Result<f32, String> {
-    text.parse().map_err(|_| "write a length in mm, such as 45".to_owned())
-}
-
-/// Parses a distance in metres.
-pub fn parse_metres(text: &str) -> Result<f32, String> {
-    text.parse().map_err(|_| "write a distance in metres, such as 20".to_owned())
-}
-
-/// Parses a factor of magnification.
-pub fn parse_zoom(text: &str) -> Result<f32, String> {
-    text.parse().map_err(|_| "write a factor, such as 2".to_owned())
-}
-
 /// Parses a point in time in seconds, which may be negative.
 pub fn parse_time(text: &str) -> Result<f32, String> {
     text.parse().map_err(|_| "write a time in seconds, such as 0.5".to_owned())
-}
-
-/// Parses a seed.
-pub fn parse_seed(text: &str) -> Result<u64, String> {
-    let seed = text.parse().ok().filter(|&seed| i64::try_from(seed).is_ok());
-    seed.ok_or_else(|| format!("write a whole number from 0 to {}", i64::MAX))
 }
 
 /// Parses the quality of a JPEG.

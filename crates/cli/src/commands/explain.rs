@@ -18,12 +18,12 @@ pub fn run(arguments: &Explain, common: &Common) -> anyhow::Result<u8> {
     let user = settings_from::explain(arguments).map_err(usage::wrong)?;
     arguments.studio.check().map_err(usage::wrong)?;
     arguments.studio.check_files()?;
-    let given = Given::open(&arguments.scene, &arguments.posed.input_format, common)?;
+    let given = Given::open(&arguments.scene, &arguments.input_format, common)?;
     let confines = SandboxPaths::default().reading_scene(Given::place(&arguments.scene));
     confines.reading_options(&arguments.studio).enter(common)?;
-    let options = read_options_with(common, &arguments.posed.choices, arguments.posed.at);
+    let options = read_options_with(common, &arguments.choices, arguments.studio.time());
     let mut scene = given.scene(&options)?;
-    check_choices(&scene, &arguments.posed.choices).map_err(usage::wrong)?;
+    check_choices(&scene, &arguments.choices).map_err(usage::wrong)?;
     arguments.studio.set_up(&mut scene, &options)?;
     report_warnings(&scene.warnings, common)?;
     let job = Job::new(&scene, JobRequest::from(&user).max_memory(common.max_memory))?;

@@ -36,7 +36,7 @@ pub fn run(arguments: Serve, common: &Common) -> anyhow::Result<u8> {
     arguments.studio.check_files()?;
     denoisers::load(0, common);
     confine(&arguments, common)?;
-    let read = read_options_with(common, &arguments.choices, arguments.at.unwrap_or(0.0));
+    let read = read_options_with(common, &arguments.choices, arguments.studio.time());
     let scene = open(&arguments, &read)?;
     report_warnings(&scene.warnings, common)?;
     report_notes(&scene.notes, common);

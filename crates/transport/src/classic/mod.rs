@@ -13,7 +13,8 @@ use bilux_scene::Reader;
 
 pub(crate) const SPECULAR: Parameter = Parameter {
     name: "specular",
-    summary: "the specular highlight uses the halfway vector (Equation 1) or the reflected direction",
+    summary: "how highlights are computed: from the halfway vector of the paper's Equation 1, or from the reflected ray \
+              of its section 3.1",
     unit: "",
     kind: ParameterKind::Choice(&["halfway", "reflect"]),
     default: "halfway",

@@ -6,7 +6,7 @@ use super::files::Files;
 use crate::arguments::farming::Farm;
 use crate::arguments::{Arguments, Command, Render};
 use crate::commands::render::aov;
-use anyhow::{Context, bail};
+use anyhow::bail;
 use clap::Parser;
 use std::path::Path;
 
@@ -41,9 +41,7 @@ pub(super) fn parse(options: &[String]) -> anyhow::Result<Box<Render>> {
 /// If there is one, or if there is no such tone curve or layer.
 pub(super) fn check(render: &Render, farm: &Farm, picture: &str) -> anyhow::Result<()> {
     aov::check(render)?;
-    if let Some(curve) = render.tonemap.as_deref().filter(|name| *name != "auto") {
-        bilux::pictures::tone_map(curve).context("--tonemap")?;
-    }
+    render.check_tonemap()?;
     let never = [
         ("--frames", render.frames.is_some(), "write it before `--`"),
         (
@@ -94,7 +92,7 @@ pub(super) fn check(render: &Render, farm: &Farm, picture: &str) -> anyhow::Resu
 }
 
 fn wants_denoiser(render: &Render) -> bool {
-    render.denoise.as_deref().is_some_and(|name| name != "off" && name != "none")
+    render.settings.text("denoise").is_some_and(|name| name != "off" && name != "none")
 }
 
 /// The words of the options, with the job's copies in place of files.

@@ -24,11 +24,12 @@ pub fn check_scenes(scenes: &[PathBuf]) -> anyhow::Result<()> {
 
 /// True if a render is likely to use a denoiser.
 pub fn may_denoise(arguments: &Render) -> bool {
-    let may_use = match arguments.denoise.as_deref() {
+    let is_given = |key: &str| arguments.settings.has(key);
+    let may_use = match arguments.settings.text("denoise") {
         Some("auto" | "oidn") => true,
         Some(_) => false,
         // A fixed number of samples is not denoised, so its bytes never depend on a denoiser.
-        None => arguments.spp.is_none() || arguments.noise.is_some() || arguments.time_limit.is_some(),
+        None => !is_given("spp") || is_given("noise") || is_given("time_limit"),
     };
     may_use && arguments.samples.is_none() && arguments.crop.is_none()
 }
@@ -37,7 +38,7 @@ pub fn may_denoise(arguments: &Render) -> bool {
 /// libraries are loaded before the first byte of a file is read, and none is loaded afterwards.
 pub fn begin_loading(arguments: &Render, common: &Common) {
     if may_denoise(arguments) {
-        load(arguments.threads.unwrap_or(0) as usize, common);
+        load(arguments.settings.number("threads").unwrap_or(0.0) as usize, common);
     }
 }
 

@@ -138,30 +138,14 @@ fn identity(input: &Input, user: &Parameters) -> anyhow::Result<Identity> {
         GlassArgument::Thin => "thin",
         GlassArgument::Solid => "solid",
     };
-    let StudioArguments {
-        preset,
-        env,
-        layer,
-        background,
-        change,
-        intrinsics,
-        // These are settings, which are there already.
-        orbit: _,
-        eye: _,
-        look_at: _,
-        zoom: _,
-        up: _,
-        front: _,
-        focal: _,
-        ground: _,
-        fog: _,
-    } = &a.studio;
+    // Settings are there already.
+    let StudioArguments { settings: _, preset, env, layer, change, intrinsics } = &a.studio;
     let options = [
         ("--preset", said(preset.as_ref())),
         ("--intrinsics", file(intrinsics)),
         ("--env", file(env)),
         ("--layer", said(layer.as_ref())),
-        ("--background", said(background.as_ref())),
+        ("--background", said(a.studio.picture_behind().map(Path::display))),
         ("--change", change.join(" ")),
         ("--turntable", said(a.turntable)),
         ("--animation", said(a.choices.animation.as_ref())),

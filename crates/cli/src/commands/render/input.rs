@@ -23,6 +23,17 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+/// A picture that is wanted.
+#[derive(Clone, Copy)]
+pub struct Wanted<'a> {
+    /// The settings of the command line.
+    pub user: &'a Parameters,
+    /// The series that it belongs to.
+    pub series: &'a Series,
+    /// The name of its file.
+    pub output: &'a Path,
+}
+
 /// A scene file, which may have to be read again for another time.
 pub struct Input<'a> {
     pub path: &'a Path,
@@ -113,15 +124,9 @@ impl Input<'_> {
     }
 
     /// Makes the job for a scene, with everything that the command line says about it.
-    pub fn job(
-        &self,
-        scene: &SceneBuilder,
-        user: &Parameters,
-        series: &Series,
-        output: &Path,
-    ) -> anyhow::Result<Job> {
+    pub fn job(&self, scene: &SceneBuilder, wanted: Wanted) -> anyhow::Result<Job> {
         let arguments = self.arguments;
-        let request = self.request(user, series, output)?;
+        let request = self.request(wanted)?;
         // From one picture of a turntable to the next only the camera moves.
         let (mut own, mut shared) = (Built::default(), self.built.borrow_mut());
         let built = if arguments.turntable.is_some() { &mut *shared } else { &mut own };
@@ -144,7 +149,7 @@ impl Input<'_> {
     }
 
     /// Request of the command line for a picture.
-    fn request(&self, user: &Parameters, series: &Series, output: &Path) -> anyhow::Result<JobRequest> {
+    fn request(&self, Wanted { user, series, output }: Wanted) -> anyhow::Result<JobRequest> {
         let (arguments, common) = (self.arguments, self.common);
         // A path is drawn into the picture that is shown, even if only a part of it is rendered.
         let is_whole = arguments.replay.is_some() || !arguments.is_part();
@@ -169,16 +174,9 @@ impl Input<'_> {
     }
 
     /// The job with the next and the previous pose of a scene whose meshes move, as far as layers of motion need them.
-    pub fn with_other_poses(
-        &self,
-        job: Job,
-        scene: &SceneBuilder,
-        user: &Parameters,
-        series: &Series,
-        output: &Path,
-    ) -> anyhow::Result<Job> {
-        let wanted = aov::layers(self.arguments);
-        let needs = |is_needed: fn(Aov) -> bool| wanted.iter().copied().any(is_needed);
+    pub fn with_other_poses(&self, job: Job, scene: &SceneBuilder, wanted: Wanted) -> anyhow::Result<Job> {
+        let layers = aov::layers(self.arguments);
+        let needs = |is_needed: fn(Aov) -> bool| layers.iter().copied().any(is_needed);
         if !scene.inventory.moves() {
             return Ok(job);
         }
@@ -186,7 +184,7 @@ impl Input<'_> {
         let pose = |time: f32| {
             let mut posed = self.read(time, false)?;
             posed.movement = scene.movement.clone();
-            self.job(&posed, user, series, output)
+            self.job(&posed, wanted)
         };
         let job = if needs(Aov::needs_next) { job.moving_to(&pose(time + frame)?) } else { job };
         Ok(if needs(Aov::needs_previous) { job.moving_from(&pose(time - frame)?) } else { job })

@@ -25,7 +25,7 @@ use crate::commands::shared::sandbox_paths::{SandboxPaths, check_read, folder_of
 use crate::process::ending::{finished, under_way};
 use crate::process::interrupt::{Interrupt, interrupt};
 use crate::process::{output, signals, usage};
-use anyhow::{Context, bail};
+use anyhow::bail;
 use bilux::budget::{with_default_budget, with_fast_budget};
 use bilux::checkpoint::checkpoint_path;
 use bilux::scene::{Parameters, SceneBuilder};
@@ -34,7 +34,7 @@ use bilux::{JobRequest, Series};
 use denoisers::{begin_loading, check_scenes};
 use finishing::finish;
 use frames::FinishedFrames;
-use input::Input;
+use input::{Input, Wanted};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -51,9 +51,7 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
     replaying::check(arguments).map_err(usage::wrong)?;
     arguments.studio.check().map_err(usage::wrong)?;
     arguments.studio.check_files()?;
-    if let Some(curve) = arguments.tonemap.as_deref().filter(|name| *name != "auto") {
-        bilux::pictures::tone_map(curve).context("--tonemap").map_err(usage::wrong)?;
-    }
+    arguments.check_tonemap().map_err(usage::wrong)?;
     let begun = Instant::now();
     begin_loading(arguments, common);
     if let Err(error) = begin(&targets, arguments, common, begun) {
@@ -164,7 +162,7 @@ fn render_one(
     interrupt.ends_itself(false);
     check_read(&target.scene, common)?;
     let input = Input::open(&target.scene, arguments, common, interrupt, watched)?;
-    let mut scene = input.read(arguments.at.unwrap_or(0.0), arguments.moments().is_some())?;
+    let mut scene = input.read(arguments.studio.time(), arguments.moments().is_some())?;
     input.warn(&scene.warnings)?;
     report_notes(&scene.notes, common);
     input.warn(&still_frames(arguments, &scene))?;
@@ -217,13 +215,14 @@ fn render_scene(
     }
     let by_default = is_whole && with_default_budget(&scene.settings, &mut user);
     let output = &target.output;
-    let mut job = input.job(scene, &user, series, output)?;
-    if scene.inventory.moves() && job.settings().time != arguments.at.unwrap_or(0.0) {
+    let wanted = Wanted { user: &user, series, output };
+    let mut job = input.job(scene, wanted)?;
+    if scene.inventory.moves() && job.settings().time != arguments.studio.time() {
         // The time was set otherwise than by --at.
         *scene = input.read(job.settings().time, arguments.moments().is_some())?;
-        job = input.job(scene, &user, series, output)?;
+        job = input.job(scene, wanted)?;
     }
-    let job = input.with_other_poses(job, scene, &user, series, output)?;
+    let job = input.with_other_poses(job, scene, wanted)?;
     let build_seconds = begun.elapsed().as_secs_f64();
     input.warn(job.warnings())?;
     // That the studio lights a model without light is part of the line about its picture.
@@ -240,6 +239,7 @@ fn render_scene(
         return finish(input, &job, target, build_seconds);
     };
     let (series, fps) = (job.series(), job.settings().fps);
+    let wanted = Wanted { series: &series, ..wanted };
     let mut finished = FinishedFrames::begin(input, &user, target)?;
     for frame in first..=last {
         of_series(frame - first, last - first + 1);
@@ -254,12 +254,12 @@ fn render_scene(
         let posed = if scene.inventory.moves() {
             let mut posed = input.read(time, false)?;
             posed.movement = scene.movement.clone();
-            &input.job(&posed, &user, &series, output)?
+            &input.job(&posed, wanted)?
         } else {
             &job
         };
         let shown = posed.at_time(time).begun_at(input.begun.get());
-        let shown = input.with_other_poses(shown, scene, &user, &series, output)?;
+        let shown = input.with_other_poses(shown, scene, wanted)?;
         let status = finish(input, &shown, &numbered, build_seconds)?;
         if status != DONE {
             finished.stop();

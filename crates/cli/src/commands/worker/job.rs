@@ -282,8 +282,12 @@ mod tests {
         let Command::Render(render) = parsed.command else { panic!("{:?}", job.command) };
         assert_eq!(render.scenes, [PathBuf::from("--help")], "a name is no option");
         assert_eq!(render.output, Some(PathBuf::from("-x.png")));
-        assert_eq!((render.size.as_deref(), render.spp, render.fast), (Some("64x48"), Some(4), false));
-        assert_eq!((render.denoise.as_deref(), render.seed), (Some("auto"), None));
+        let settings = &render.settings;
+        assert_eq!((settings.text("size"), settings.number("spp")), (Some("64x48"), Some(4.0)));
+        assert_eq!(
+            (settings.text("denoise"), settings.has("seed"), render.fast),
+            (Some("auto"), false, false)
+        );
         assert_eq!(render.aov, ["albedo", "depth"]);
         assert_eq!(
             (render.set, render.studio.change),
@@ -292,7 +296,7 @@ mod tests {
                 ["light:0:intensity=5", "light:1:scale=2"].map(str::to_owned).to_vec()
             )
         );
-        assert_eq!(render.studio.orbit.as_deref(), Some("-30,10"));
+        assert_eq!(render.studio.settings.text("orbit"), Some("-30,10"));
         assert_eq!(parsed.common.max_memory, 512 << 20);
         assert!(render.json && !parsed.common.sandbox && !parsed.common.allow_outside);
     }
