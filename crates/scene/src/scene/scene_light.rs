@@ -15,7 +15,7 @@ pub struct SceneLight {
     pub light: Arc<dyn Light>,
     /// Colour of the light in `cast`, `whitted` and `cook`.
     pub classic_colour: Rgb,
-    /// It lights next to nothing of what is visible ([`SceneBuilder::has_faint_emitters`](crate::SceneBuilder::has_faint_emitters)).
+    /// Whether it lights next to nothing of what is visible ([`SceneBuilder::has_faint_emitters`](crate::SceneBuilder::has_faint_emitters)).
     pub is_faint: bool,
 }
 

@@ -52,7 +52,7 @@ pub(super) fn rebuild(colours: &mut Planes, guides: &Guides, level: CpuLevel) ->
     Ok(())
 }
 
-/// What a fit reads.
+/// Input of fits.
 struct Around<'a> {
     colours: &'a Planes,
     guides: &'a Guides,

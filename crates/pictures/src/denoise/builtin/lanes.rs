@@ -1,7 +1,10 @@
 //! Pixels that are computed side by side.
 
-/// How many: a register of AVX-512.
+/// Number of them: a register of AVX-512.
 pub(super) const LANES: usize = 16;
+
+/// Columns of a tile of a pass. Tiles at the right edge are as wide, and what they compute beyond it is not used.
+pub(super) const COLUMNS: usize = 4 * LANES;
 
 /// A number for each of them.
 pub(super) type Lanes = [f32; LANES];

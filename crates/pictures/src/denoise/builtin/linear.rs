@@ -18,7 +18,7 @@ pub(super) struct Moments {
 }
 
 impl Moments {
-    /// Those of no neighbours.
+    /// Sums over no neighbours.
     pub(super) const NONE: Moments = Moments { positions: [[0.0; LANES]; 5], light: [[[0.0; LANES]; 3]; 2] };
 
     /// Adds neighbours at an offset of (x, y) steps.

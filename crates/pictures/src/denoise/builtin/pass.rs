@@ -1,17 +1,15 @@
 //! One à-trous pass over all pixels: each becomes a weighted mean of 5 × 5 pixels that are `step` pixels apart.
 
 use super::guides::{ALBEDO, DEPTH, Guides, NORMAL, SLOPE, TIGHTNESS, WITHIN};
-use super::lanes::{LANES, Lanes, add_products, add_scaled, lanes_at, product};
+use super::lanes::{COLUMNS, LANES, Lanes, add_products, add_scaled, lanes_at, product};
 use super::linear::Moments;
 use super::planes::{Light, MARGIN, Planes};
 use bilux_math::CpuLevel;
 use bilux_math::cpu_level::{Stage, run_at};
 use bilux_math::parallel::for_each_with;
 
-/// Rows and columns of a tile. What it reads and computes stays in a core's caches. Tiles at the right edge are as wide, and what they
-/// compute beyond it is not used.
+/// Rows of a tile. What it reads and computes stays in a core's caches.
 const ROWS: usize = 8;
-pub(super) const COLUMNS: usize = 64;
 
 /// Weights of neighbours by their distance in steps, along each axis.
 const NEAR: [f32; 5] = [0.7, 0.9, 1.0, 0.9, 0.7];
@@ -58,11 +56,11 @@ pub(super) fn pass(light: &Light, guides: &Guides, step: usize, level: CpuLevel,
 /// A neighbour in the window around each pixel.
 #[derive(Clone, Copy)]
 struct Neighbour {
-    /// Where it is, in steps.
+    /// Place beside the pixel, in steps.
     steps: [f32; 2],
-    /// How far it is in the planes.
+    /// Distance in the planes.
     offset: isize,
-    /// Its weight, whatever it shows.
+    /// Weight that it has whatever it shows.
     share: f32,
 }
 
@@ -111,7 +109,7 @@ struct Compare<'a> {
     apart: &'a mut Apart,
 }
 
-/// What these depend on.
+/// Input of [`Compare`].
 struct Compared<'a> {
     /// R, G, B and variance.
     light: [Pair<'a>; 4],
@@ -159,7 +157,7 @@ struct Weigh<'a> {
     weights: &'a mut [f32; COLUMNS],
 }
 
-/// What these depend on.
+/// Input of [`Weigh`].
 struct Weighed<'a> {
     /// Differences of the rows above, of these pixels, and below.
     apart: [&'a Apart; 3],
@@ -170,7 +168,7 @@ struct Weighed<'a> {
     slope: [&'a [f32]; 2],
     tightness: &'a [f32],
     within: &'a [f32],
-    /// Where the neighbour is, in pixels.
+    /// Place of the neighbour, in pixels.
     beside: [f32; 2],
     by_depth: f32,
     share: f32,
@@ -215,12 +213,12 @@ struct Mean<'a> {
     smooth: &'a mut [[f32; COLUMNS]; 4],
 }
 
-/// What these depend on.
+/// Input of [`Mean`].
 struct Averaged<'a> {
     window: &'a Window<'a>,
     /// Index of the first pixel.
     first: usize,
-    /// By neighbour.
+    /// Weights by neighbour.
     weights: &'a [[f32; COLUMNS]; COUNT],
     sloped: bool,
 }
@@ -288,9 +286,9 @@ impl Sums {
 
 /// Some pixels while they are smoothed.
 struct Tile {
-    /// By neighbour, of all rows and one more on each side.
+    /// Differences by neighbour, of all rows and one more on each side.
     apart: Vec<[Apart; ROWS + 2]>,
-    /// By neighbour, of one row.
+    /// Weights by neighbour, of one row.
     weights: Box<[[f32; COLUMNS]; COUNT]>,
     /// R, G, B and variance of one row.
     smooth: [[f32; COLUMNS]; 4],

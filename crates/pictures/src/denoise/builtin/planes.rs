@@ -1,7 +1,7 @@
 //! Planes with a margin around them, so that neighbours beyond the edge need no special case.
 
+use super::lanes::COLUMNS;
 use super::outliers;
-use super::pass::COLUMNS;
 use crate::PictureError;
 use crate::denoise::Layer;
 use crate::limits::zeroed;
