@@ -1,7 +1,7 @@
 //! The table of structures. To add a structure, add a file with its `ENTRY`, and a line here.
 
+use crate::CpuLevel;
 use crate::accelerator::Accelerator;
-use crate::cpu_level::CpuLevel;
 use crate::mesh::TriangleMesh;
 use crate::{brute_force, brute_simd, bsp, bvh, bvh8, kd_tree};
 use bilux_math::registry::Entry;

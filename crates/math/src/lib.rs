@@ -5,6 +5,7 @@
 
 pub mod aabb;
 pub mod colour;
+pub mod cpu_level;
 pub mod frame;
 pub mod hash;
 pub mod motion;
@@ -18,6 +19,7 @@ pub mod warp;
 
 pub use aabb::Aabb;
 pub use colour::Rgb;
+pub use cpu_level::CpuLevel;
 pub use frame::Frame;
 pub use glam::{self, DMat3, DMat4, DVec2, DVec3, Mat3, Mat4, Quat, UVec2, Vec2, Vec3};
 pub use motion::{Motion, MotionKey};

@@ -15,7 +15,7 @@ const ALLOWED: &[(&str, &str)] = &[
     ("crates/pictures/src/denoise/oidn/library.rs", "a denoiser's library, loaded at run time"),
     ("crates/accel/src/bvh8/mapped.rs", "trees mapped from files"),
     ("crates/accel/tests/suite/places.rs", "a test that maps a tree"),
-    ("crates/transport/src/queue/lanes.rs", "loops over paths, compiled for each level of instructions"),
+    ("crates/math/src/cpu_level.rs", "loops over numbers, compiled for each level of instructions"),
     ("crates/accel/src/bvh8/kernel/", "the wide tree's walk, a file for each level of instructions"),
 ];
 

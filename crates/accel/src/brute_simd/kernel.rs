@@ -4,7 +4,7 @@
 //! gives the same mask.
 #![allow(unsafe_code)] // Calls and loads of the wide kernels; each call says why it is sound.
 
-use crate::cpu_level::CpuLevel;
+use crate::CpuLevel;
 use crate::triangle::PreparedRay;
 
 /// Triangles in a block.

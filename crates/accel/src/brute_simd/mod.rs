@@ -2,9 +2,9 @@
 
 mod kernel;
 
+use crate::CpuLevel;
 use crate::accelerator::{Traverse, TreeShape};
 use crate::counters::Count;
-use crate::cpu_level::CpuLevel;
 use crate::mesh::TriangleMesh;
 use crate::ray::{Hit, Query, Ray};
 use crate::registry::AcceleratorEntry;

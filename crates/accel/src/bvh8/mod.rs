@@ -18,9 +18,9 @@ mod summary;
 #[cfg(test)]
 mod tests;
 
+use crate::CpuLevel;
 use crate::accelerator::{Traverse, TreeShape};
 use crate::counters::Count;
-use crate::cpu_level::CpuLevel;
 use crate::mesh::TriangleMesh;
 use crate::ray::{Hit, Primitive, Query, Ray};
 use crate::registry::{AcceleratorEntry, BuildError, BuildOptions};

@@ -12,7 +12,7 @@ use super::layout::{
     self, BLOCK_UNITS, LANES, MAX_BLOCKS, MAX_UNITS, NO_TRIANGLE, NODE_UNITS, Ref, Unit, WIDTH,
 };
 use super::summary::TreeSummary;
-use crate::cpu_level::CpuLevel;
+use crate::CpuLevel;
 use bilux_math::hash::mix64;
 use std::io::{self, Read, Write};
 

@@ -1,17 +1,17 @@
 //! The file of a checkpoint.
 
 use super::identity::Identity;
+use crate::encoding::ContentHash;
 use crate::error::CheckpointError;
 use bilux_pictures::formats::Unfinished;
 use bilux_transport::{Checkpoint, FilmError};
-use sha2::{Digest, Sha256};
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// First bytes of a checkpoint, with the version of its form.
-const MAGIC: &[u8; 20] = b"bilux checkpoint 1\n\0";
+const MAGIC: &[u8; 20] = b"bilux checkpoint 2\n\0";
 /// No head is longer.
 const MAX_HEAD: u32 = 1 << 16;
 /// The length of a hash in bytes.
@@ -94,7 +94,7 @@ impl SavedRender {
         limited.map_err(|source| fail("read it", source))?;
         let (head, start) = parse_head(path, &bytes)?;
         let (content, hash) = bytes.split_at(bytes.len().saturating_sub(HASH));
-        if content.len() < start || Sha256::digest(content)[..] != *hash {
+        if content.len() < start || ContentHash::of(content).0 != *hash {
             return Err(damaged(path, "this checkpoint is damaged or not complete: its checksum is wrong"));
         }
         let read = Checkpoint::from_bytes(&content[start..]);
@@ -125,14 +125,14 @@ pub(super) fn write(
         let mut how = OpenOptions::new();
         let (unfinished, file) =
             Unfinished::create(&part_path(path), how.write(true).create(true).truncate(true))?;
-        let mut out = Hashed { file: io::BufWriter::new(file), hash: Sha256::new() };
+        let mut out = Hashed { file: io::BufWriter::new(file), hash: blake3::Hasher::new() };
         out.write_all(MAGIC)?;
         out.write_all(&(text.len() as u32).to_le_bytes())?;
         out.write_all(text.as_bytes())?;
-        out.write_all(&Sha256::digest(text.as_bytes()))?;
+        out.write_all(&ContentHash::of(text.as_bytes()).0)?;
         content(&mut out)?;
-        let hash = out.hash.clone().finalize();
-        out.file.write_all(&hash)?;
+        let hash = out.hash.finalize();
+        out.file.write_all(hash.as_bytes())?;
         let file = out.file.into_inner().map_err(io::IntoInnerError::into_error)?;
         file.sync_all()?;
         unfinished.complete(path)
@@ -147,7 +147,7 @@ pub(super) fn write(
 /// Writes to a file, and hashes what it writes.
 struct Hashed {
     file: io::BufWriter<File>,
-    hash: Sha256,
+    hash: blake3::Hasher,
 }
 
 impl Write for Hashed {
@@ -171,7 +171,7 @@ fn parse_head(path: &Path, bytes: &[u8]) -> Result<(Head, usize), CheckpointErro
     let broken = || damaged(path, "this checkpoint is damaged or not complete");
     let text = rest.get(..length.min(MAX_HEAD) as usize).ok_or_else(broken)?;
     let hash = rest.get(text.len()..text.len() + HASH).ok_or_else(broken)?;
-    let head = std::str::from_utf8(text).ok().filter(|_| Sha256::digest(text)[..] == *hash);
+    let head = std::str::from_utf8(text).ok().filter(|_| ContentHash::of(text).0 == *hash);
     let head = head.and_then(Head::from_text).ok_or_else(broken)?;
     Ok((head, MAGIC.len() + 4 + text.len() + HASH))
 }

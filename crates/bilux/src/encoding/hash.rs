@@ -1,24 +1,25 @@
 //! Hashes of contents, computed once for as long as the content lives.
 
-use sha2::{Digest, Sha256};
 use std::collections::HashMap;
 use std::fmt;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError, Weak};
 
-/// The SHA-256 of some bytes: equal contents have equal hashes, on every machine.
+/// The BLAKE3 hash of some bytes: equal contents have equal hashes, on every machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ContentHash(pub [u8; 32]);
 
 impl ContentHash {
     /// The hash of these bytes.
     pub fn of(bytes: &[u8]) -> ContentHash {
-        ContentHash(Sha256::digest(bytes).into())
+        ContentHash(blake3::hash(bytes).into())
     }
 
     /// The hash of bytes that `write` gives piece by piece.
     pub(super) fn of_pieces(write: impl FnOnce(&mut dyn FnMut(&[u8]))) -> ContentHash {
-        let mut hash = Sha256::new();
-        write(&mut |piece| hash.update(piece));
+        let mut hash = blake3::Hasher::new();
+        write(&mut |piece| {
+            hash.update(piece);
+        });
         ContentHash(hash.finalize().into())
     }
 
@@ -97,7 +98,7 @@ mod tests {
     #[test]
     fn hashes_are_read_from_hexadecimal_digits() {
         let hash = ContentHash::of(b"abc");
-        assert!(hash.to_string().starts_with("ba7816bf8f01cfea"));
+        assert!(hash.to_string().starts_with("6437b3ac38465133"));
         assert_eq!(ContentHash::from_hex(&hash.to_string()), Some(hash));
         assert_eq!(ContentHash::from_hex("ba78"), None);
         assert_eq!(ContentHash::from_hex(&"x".repeat(64)), None);

@@ -42,7 +42,7 @@ use tables::ReadTables;
 const MAGIC: [u8; 12] = *b"bilux scene\n";
 
 /// The version of the form of documents and blobs; others are refused.
-pub const VERSION: u32 = 4;
+pub const VERSION: u32 = 5;
 
 /// The bytes of a hash.
 const HASH: usize = 32;

@@ -74,6 +74,7 @@ pub(super) fn write_what_is_seen(scene: &SceneBuilder, to: &mut Encoder) {
     // Settings may choose a camera by its name.
     scene.cameras.iter().for_each(|camera| camera.spec.name.write(to));
     scene.stroke_widths.write(to);
+    scene.has_faint_emitters.write(to);
 }
 
 impl Coded for SceneBuilder {
@@ -89,6 +90,7 @@ impl Coded for SceneBuilder {
         environment_unspecified.write(to);
         exposure_unspecified.write(to);
         describes_all_light.write(to);
+        self.has_faint_emitters.write(to);
         let SceneBuilder { up, unit, origin, stroke_widths, .. } = self;
         up.write(to);
         unit.write(to);
@@ -113,6 +115,7 @@ impl Coded for SceneBuilder {
             environment_unspecified: Coded::read(from)?,
             exposure_unspecified: Coded::read(from)?,
             describes_all_light: Coded::read(from)?,
+            has_faint_emitters: Coded::read(from)?,
             up: Coded::read(from)?,
             unit: Coded::read(from)?,
             origin: Coded::read(from)?,

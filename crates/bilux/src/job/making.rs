@@ -112,6 +112,7 @@ impl Completed {
         let judged = settings.own_light.filter(|_| !settings.integrator.classic);
         studio.brightness = judged.map(|judged| judged.brightness());
         presets::add_missing(&mut source, &studio);
+        source.has_faint_emitters = settings.own_light.is_some_and(|judged| judged.is_faint());
         settings.view.place(&mut source, &settings.camera);
         let objects = source.objects.len();
         let has_backdrop = source.lights.iter().any(Spec::is_backdrop);

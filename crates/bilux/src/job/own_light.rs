@@ -51,7 +51,10 @@ pub(crate) fn measure(
     let others = others.map(|camera| illumination(&built, &**camera, gets_surroundings));
     let measured = others.fold(illumination(&built, &*camera, gets_surroundings), worst);
     let is_enough = decides.then(|| reached(&measured) >= ENOUGH);
-    let mut judged = Judged { is_enough, is_said: false, measured };
+    let bounds = built.bounds();
+    let power = built.lights().iter().map(|light| light.light.power(&bounds)).sum::<f32>();
+    let power = power / (std::f32::consts::PI * bounds.radius() * bounds.radius());
+    let mut judged = Judged { is_enough, is_said: false, measured, power };
     // Nobody wonders about the studio where signs and screens glow that hardly light anything.
     judged.is_said = is_enough == Some(true)
         || decides && (seems_lit(scene) || measured.surfaces == 0.0 || judged.exposure() != 0.0);

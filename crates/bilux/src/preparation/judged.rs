@@ -9,6 +9,9 @@ const SOME: f32 = 0.05;
 const SURFACE: [f32; 2] = [0.5, 1.5];
 /// Radiance of an emitter that a display shows well, and by how many stops that may be missed, where nothing else is visible.
 const EMITTER: [f32; 2] = [1.0, 3.0];
+/// Own light is faint that reaches at most this fraction of the visible surfaces, makes a white one there at most this bright in the median, and
+/// whose power is at most this much per area of the scene's outline: what is around it, such as the studio's ground, is not among the surfaces.
+const FAINT: [f32; 3] = [0.02, 0.01, 0.005];
 /// Exposures are multiples of this many stops.
 const STEP: f32 = 0.25;
 
@@ -20,6 +23,8 @@ pub(crate) struct Judged {
     /// Whether the user may wonder, and is told.
     pub(crate) is_said: bool,
     pub(crate) measured: Illumination,
+    /// Power of all own light over the area of the outline of a sphere around the scene, in W/m².
+    pub(crate) power: f32,
 }
 
 impl Judged {
@@ -38,6 +43,13 @@ impl Judged {
         // Where its own light is dim, the studio's is not.
         let is_usual = stops.abs() <= tolerance || stops > 0.0 && self.is_enough == Some(false);
         if is_usual { 0.0 } else { (stops / STEP).round() * STEP }
+    }
+
+    /// Whether the studio's light leaves next to nothing of it to be seen.
+    pub(crate) fn is_faint(&self) -> bool {
+        let ([reach, level, power], measured) = (FAINT, &self.measured);
+        let is_seen = measured.lit > reach || measured.faint > level || self.power > power;
+        self.is_enough == Some(false) && measured.surfaces > 0.0 && !is_seen
     }
 
     /// Brightness of the scene, as a multiple of the usual one.

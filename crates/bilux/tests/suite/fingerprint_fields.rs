@@ -53,6 +53,7 @@ fn numbers(scene: &mut SceneBuilder) -> Vec<&mut f32> {
         environment_unspecified: _,
         exposure_unspecified: _,
         describes_all_light: _,
+        has_faint_emitters: _,
         up: _,
         unit: _,
         settings: _,

@@ -94,6 +94,26 @@ fn headlights_do_not_turn_the_studio_off() {
 }
 
 #[test]
+fn emission_that_lights_next_to_nothing_is_sampled_rarely_beside_the_studio() {
+    let faint = |scene: &SceneBuilder| {
+        let job = job(scene);
+        job.scene().lights().iter().filter(|light| light.is_faint).count()
+    };
+    assert_eq!(faint(&car(0.1)), 2, "both lamps, and none of the studio's lights");
+    // Such lamps light the studio's ground, which is not measured.
+    assert_eq!(faint(&car(20.0)), 0);
+    // Nothing but emitters is seen.
+    let mut cube = file();
+    put(&mut cube, cuboid(Vec3::ZERO, Vec3::ONE), glowing(0.0005));
+    assert_eq!(faint(&cube), 0);
+    // The file describes its surroundings: nothing is measured.
+    let mut outside = car(0.1);
+    outside.lights.push(Spec::new("sky", "environment").with("radiance", 1.0f32));
+    outside.environment_unspecified = false;
+    assert_eq!(faint(&outside), 0);
+}
+
+#[test]
 fn scenes_of_emitters_only_get_the_studio() {
     let mut scene = file();
     for (i, strength) in [1.0, 2.0, 4.0, 8.0, 16.0].into_iter().enumerate() {

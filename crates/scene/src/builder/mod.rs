@@ -90,6 +90,9 @@ pub struct SceneBuilder {
     pub exposure_unspecified: bool,
     /// The file describes all light that its scene has, so that a scene without any is black.
     pub describes_all_light: bool,
+    /// Surfaces that emit light are known to light next to nothing of what the camera sees, beside other lights. Integrators sample them rarely, with the
+    /// same mean.
+    pub has_faint_emitters: bool,
     /// The up axis, as far as the file or its format states it.
     pub up: UpHint,
     /// Metres per unit of length of the file; 0 means one metre, as in scenes that state no unit.
@@ -243,6 +246,9 @@ impl SceneBuilder {
             Some(object) => [name_of(object), self.group_of(object)].map(str::to_owned),
             None => groups.get(object - self.objects.len()).cloned().unwrap_or_default(),
         });
+        if self.has_faint_emitters {
+            all.mark_faint(self.objects.len());
+        }
         Ok(Scene::new(Arc::new(all), accel, shutter, &mut parts.top))
     }
 

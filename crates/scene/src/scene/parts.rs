@@ -149,6 +149,13 @@ impl SceneParts {
         }
     }
 
+    /// Marks the lights of the first objects as faint.
+    pub(crate) fn mark_faint(&mut self, objects: usize) {
+        for light in self.object_lights.iter().take(objects).flatten() {
+            self.lights[*light as usize].is_faint = true;
+        }
+    }
+
     /// Sets the layers of light that objects and spheres belong to, as far as they emit any, and names for those without.
     pub(crate) fn group_surfaces(&mut self, name_and_group_of: impl Fn(usize) -> [String; 2]) {
         for (object, light) in self.object_lights.iter().enumerate() {

@@ -15,10 +15,13 @@ pub struct SceneLight {
     pub light: Arc<dyn Light>,
     /// Colour of the light in `cast`, `whitted` and `cook`.
     pub classic_colour: Rgb,
+    /// Whether it lights next to nothing of what is visible ([`SceneBuilder::has_faint_emitters`](crate::SceneBuilder::has_faint_emitters)).
+    pub is_faint: bool,
 }
 
 impl SceneLight {
     pub(crate) fn new(name: &str, light: Arc<dyn Light>) -> SceneLight {
-        SceneLight { name: name.to_owned(), group: name.to_owned(), light, classic_colour: Rgb::BLACK }
+        let [name, group] = [name, name].map(str::to_owned);
+        SceneLight { name, group, light, classic_colour: Rgb::BLACK, is_faint: false }
     }
 }

@@ -1,4 +1,5 @@
-//! Which lights to sample: all if there are few; otherwise one, chosen more often the more light it brings to a point.
+//! Which lights to sample: all if there are few; otherwise one, chosen more often the more light it brings to a point. Those that are
+//! known to light next to nothing of what is seen share one sample in sixteen vertices.
 
 use bilux_math::hash::{hash_words, unit_f32};
 use bilux_math::{Aabb, Vec2, Vec3};
@@ -12,13 +13,20 @@ use bilux_scene::{Light, Scene};
 /// [tree](LightTree) chooses one of them for the point: the ones close to it are far more likely, and those that face away are left out.
 ///
 /// Points of media have no tree, but the shares: what is chosen for a ray must not depend on where on it the point is.
+///
+/// Beside few others, [faint](bilux_scene::scene::SceneLight::is_faint) lights are sampled rarely: one of them, at a sixteenth of the vertices. What
+/// finds them by chance is weighted accordingly.
 #[derive(Clone, Debug)]
 pub struct LightChoice {
     /// The share of each light.
     shares: Vec<f32>,
-    /// `cdf[i]` is the sum of the shares `0..=i`.
+    /// `cdf[i]` is the sum of the shares `0..=i` of all that are not always sampled.
     cdf: Vec<f32>,
+    /// The lights that are always sampled, where there are few, each with its probability: 1, or 0 if it does not shine.
+    always: Vec<(usize, f32)>,
     few: bool,
+    /// One light is chosen: of all, or of the faint ones beside few others.
+    draws_one: bool,
     /// Some of them shine into narrow cones through fog.
     has_beams: bool,
     local: Local,
@@ -66,13 +74,16 @@ impl Local {
 /// Up to this many lights are all sampled.
 const FEW: usize = 4;
 
+/// The probability that a vertex samples a faint light, where there are few others.
+const FAINT: f32 = 1.0 / 16.0;
+
 const SHARED_ALIKE: f64 = 0.1;
 
 impl LightChoice {
     /// Computes the shares of a scene's lights, in their order, and the tree.
     pub fn new(scene: &Scene) -> LightChoice {
         let mut irradiances = Irradiances { scene, places: places(scene), found: Vec::new() };
-        let irradiances = scene.lights().iter().map(|l| irradiances.of(&*l.light));
+        let irradiances = scene.lights().iter().map(|l| (irradiances.of(&*l.light), l.is_faint));
         let mut choice = LightChoice::weighted(irradiances);
         choice.has_beams = scene.scatters() && scene.lights().iter().any(|l| l.light.beam().is_some());
         if choice.few {
@@ -83,13 +94,33 @@ impl LightChoice {
         choice.with_tree(scene.lights().iter().map(|l| extent(&*l.light)))
     }
 
-    fn weighted(irradiances: impl Iterator<Item = f32>) -> LightChoice {
-        let mut shares = weights(irradiances);
-        let few = shares.iter().filter(|p| **p > 0.0).count() <= FEW;
-        if few {
-            shares.iter_mut().filter(|p| **p > 0.0).for_each(|p| *p = 1.0);
+    /// Of lights with these irradiances, some of which are faint.
+    fn weighted(irradiances: impl Iterator<Item = (f32, bool)>) -> LightChoice {
+        let (irradiances, mut is_faint): (Vec<f32>, Vec<bool>) = irradiances.unzip();
+        let mut shares = weights(irradiances.iter().copied());
+        let strong = (0..shares.len()).filter(|&i| shares[i] > 0.0 && !is_faint[i]).count();
+        if strong == 0 || strong > FEW {
+            is_faint.fill(false);
         }
-        LightChoice { cdf: sums(&shares), shares, few, has_beams: false, local: Local::default() }
+        let has_faint = is_faint.contains(&true);
+        let few = has_faint || strong <= FEW;
+        let mut always = Vec::new();
+        if few {
+            let of_faint = irradiances.iter().zip(&is_faint).map(|(i, faint)| if *faint { *i } else { 0.0 });
+            let faint = weights(of_faint);
+            for (light, share) in shares.iter_mut().enumerate() {
+                if is_faint[light] {
+                    *share = FAINT * faint[light];
+                    continue;
+                }
+                *share = if *share > 0.0 { 1.0 } else { 0.0 };
+                always.push((light, *share));
+            }
+        }
+        let drawn = shares.iter().zip(&is_faint).map(|(p, faint)| if few && !faint { 0.0 } else { *p });
+        let cdf = sums(&drawn.collect::<Vec<f32>>());
+        let draws_one = !few || has_faint;
+        LightChoice { cdf, shares, always, few, draws_one, has_beams: false, local: Local::default() }
     }
 
     /// This choice with a tree over lights of these extents and powers.
@@ -121,7 +152,19 @@ impl LightChoice {
     /// True when all lights are always sampled, whatever the random number.
     #[inline]
     pub fn takes_all(&self) -> bool {
+        !self.draws_one
+    }
+
+    /// True when all lights are always sampled that light more than next to nothing.
+    #[inline]
+    pub(crate) fn is_few(&self) -> bool {
         self.few
+    }
+
+    /// The lights that are sampled from every point, each with its probability: 1, or 0 if it does not shine.
+    #[inline]
+    pub(crate) fn always(&self) -> &[(usize, f32)] {
+        &self.always
     }
 
     /// True where some lights shine into narrow cones through fog: few of the points that are lit there are found by light samples.
@@ -130,13 +173,12 @@ impl LightChoice {
         self.has_beams
     }
 
-    /// The lights to sample from a point, in metres, each with its probability there: all, or one by a random number, or one of probability 0 where none
-    /// shines. `None` stands for the points of media.
+    /// The lights to sample from a point, in metres, each with its probability there: all that always are, and one by a random number, of probability 0
+    /// where none is chosen. `None` stands for the points of media.
     #[inline]
     pub fn sample(&self, u: f32, at: Option<Vec3>) -> impl Iterator<Item = (usize, f32)> + use<'_> {
-        let one = (!self.few).then(|| self.pick(u, at).unwrap_or_default());
-        let all = if self.few { &*self.shares } else { &[] };
-        all.iter().copied().enumerate().chain(one)
+        let one = self.draws_one.then(|| self.pick(u, at).unwrap_or_default());
+        self.always.iter().copied().chain(one)
     }
 
     /// Number of random numbers and points that it takes to sample lights from a point.
@@ -148,11 +190,15 @@ impl LightChoice {
     /// Number of lights that are sampled from a point.
     #[inline]
     pub fn count(&self) -> usize {
-        if self.few { self.shares.len() } else { 1 }
+        self.always.len() + usize::from(self.draws_one)
     }
 
     /// Picks for each point with its number the light that [`LightChoice::sample`] gives, where one is chosen: faster than one by one.
     pub(crate) fn pick_each(&self, points: impl Iterator<Item = (Vec3, f32)>, picked: &mut [(usize, f32)]) {
+        if self.few {
+            let one = |u: f32| self.pick(u, None).unwrap_or_default();
+            return points.zip(picked).for_each(|((_, u), picked)| *picked = one(u));
+        }
         let local = &self.local;
         let mut walks = Vec::with_capacity(picked.len());
         for (i, (p, u)) in points.enumerate() {
@@ -169,9 +215,13 @@ impl LightChoice {
         });
     }
 
-    /// One light for a point.
+    /// One light for a point, of those that are not always sampled.
     #[inline]
     fn pick(&self, u: f32, at: Option<Vec3>) -> Option<(usize, f32)> {
+        if self.few {
+            let light = (u < FAINT).then(|| pick(&self.cdf, u / FAINT)).flatten()?;
+            return Some((light, self.shares[light]));
+        }
         let Some(p) = at else {
             let light = pick(&self.cdf, u)?;
             return Some((light, self.shares[light]));
@@ -299,7 +349,7 @@ mod tests {
             let at = Aabb::of_points([Vec3::X * i as f32]);
             (i != 2 && i != 6).then(|| (LightExtent::all_around(at), POWERS[i]))
         };
-        LightChoice::weighted(POWERS.into_iter()).with_tree((0..7).map(extent))
+        LightChoice::weighted(POWERS.map(|power| (power, false)).into_iter()).with_tree((0..7).map(extent))
     }
 
     #[test]
@@ -335,7 +385,8 @@ mod tests {
                 let at = Aabb::of_points([Vec3::X * i as f32]);
                 (i < 4).then(|| (LightExtent::all_around(at), powers[i]))
             };
-            let choice = LightChoice::weighted(powers.into_iter()).with_tree((0..6).map(extent));
+            let choice = LightChoice::weighted(powers.map(|power| (power, false)).into_iter());
+            let choice = choice.with_tree((0..6).map(extent));
             for at in [None, Some(Vec3::Y)] {
                 let of = |range: std::ops::Range<usize>| -> f32 {
                     range.map(|light| choice.probability(light, at)).sum()
@@ -361,15 +412,49 @@ mod tests {
 
     #[test]
     fn few_emitting_lights_are_all_sampled() {
-        let choice = LightChoice::weighted([1.0, 0.0, 1e9].into_iter());
+        let choice = LightChoice::weighted([1.0, 0.0, 1e9].map(|power| (power, false)).into_iter());
         assert!(choice.takes_all());
         assert_eq!(choice.sample(0.5, None).collect::<Vec<_>>(), [(0, 1.0), (1, 0.0), (2, 1.0)]);
     }
 
     #[test]
     fn without_emission_no_light_is_sampled() {
-        let dark = LightChoice::weighted([0.0].into_iter());
+        let dark = LightChoice::weighted([(0.0, false)].into_iter());
         assert_eq!(dark.probability(0, None), 0.0);
         assert_eq!(LightChoice::weighted([].into_iter()).sample(0.5, None).count(), 0);
+    }
+
+    #[test]
+    fn faint_lights_share_a_sixteenth_of_a_sample_and_all_others_have_one_each() {
+        let lights = [(2.0, false), (3.0, true), (0.0, false), (1.0, true), (5.0, false)];
+        let choice = LightChoice::weighted(lights.into_iter());
+        assert!(!choice.takes_all() && choice.is_few());
+        let mut counts = [0.0; 5];
+        const DRAWS: usize = 100_000;
+        for i in 0..DRAWS {
+            let u = (i as f32 + 0.5) / DRAWS as f32;
+            let sampled: Vec<_> = choice.sample(u, Some(Vec3::ONE)).collect();
+            assert_eq!(sampled.len(), choice.count());
+            let mut picked = [(0, 0.0)];
+            choice.pick_each([(Vec3::ONE, u)].into_iter(), &mut picked);
+            assert_eq!(sampled.last(), Some(&picked[0]));
+            for (light, probability) in sampled.into_iter().filter(|(_, probability)| *probability > 0.0) {
+                counts[light] += 1.0 / DRAWS as f32;
+                assert_eq!(probability, choice.probability(light, None));
+            }
+        }
+        // By irradiance, with a tenth shared alike: 0.9 · 3/4 + 0.05, and 0.9 · 1/4 + 0.05.
+        for (count, wanted) in counts.into_iter().zip([1.0, 0.725 / 16.0, 0.0, 0.275 / 16.0, 1.0]) {
+            assert!((count - wanted).abs() < 1e-4 + 1e-3 * wanted, "{count}, {wanted}");
+        }
+    }
+
+    #[test]
+    fn lights_are_not_faint_beside_none_and_not_beside_many() {
+        let alone = LightChoice::weighted([(1.0, true), (2.0, true)].into_iter());
+        assert!(alone.takes_all());
+        let many = LightChoice::weighted((0..6).map(|i| (1.0, i == 5)));
+        assert!(!many.is_few());
+        assert_eq!(many.probability(5, None), many.probability(0, None));
     }
 }

@@ -20,6 +20,7 @@ use crate::integrators::pixel_integrator::PixelIntegrator;
 use crate::labels::visible_normal;
 use crate::media::Media;
 use crate::media::camera_segment::CameraSegment;
+use crate::queue;
 use crate::sampling::camera_rays::CameraRays;
 use crate::schedule::progress::Progress;
 use crate::schedule::settings::{RenderSettings, threads};
@@ -148,11 +149,22 @@ pub fn coverage(
     Ok(coverage)
 }
 
+/// The camera rays of samples; those of a pinhole many at a time.
+fn camera_rays(eye: &CameraRays, places: &[SamplePlace]) -> Vec<Ray> {
+    let Some(pinhole) = eye.of_pinhole() else {
+        return places.iter().map(|place| eye.sample(*place).0).collect();
+    };
+    let mut rays = Vec::with_capacity(places.len());
+    queue::camera_rays(&pinhole, eye.context.scene, places, |_, _, ray| rays.push(ray));
+    rays
+}
+
 /// Adds one sample to each pixel of a tile.
 fn look(eye: &CameraRays, tile: &Window, sums: &mut [Sums], sample: u32) {
     let mut tracer = Tracer::new(eye.context.scene, false);
-    let places = (0..sums.len()).map(|i| tile.position(i));
-    let rays: Vec<Ray> = places.map(|(x, y)| eye.sample(SamplePlace { x, y, sample }).0).collect();
+    let place = |(x, y): (u32, u32)| SamplePlace { x, y, sample };
+    let places: Vec<SamplePlace> = (0..sums.len()).map(|i| place(tile.position(i))).collect();
+    let rays = camera_rays(eye, &places);
     let mut hits = vec![None; rays.len()];
     tracer.hits(&rays, &mut hits);
     for ((sum, ray), hit) in sums.iter_mut().zip(&rays).zip(hits) {

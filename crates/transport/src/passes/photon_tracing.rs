@@ -102,7 +102,7 @@ impl<const N: usize> Photons<N> {
         let followed = Followed::of(scene, merging, tiles, iteration);
         let (radius, mut techniques) = (merging.radius(scene, iteration), techniques(&followed.counts));
         // Of many lights one is sampled, seldom the nearest, which photons find by themselves.
-        techniques.direct |= !eye.context.lights.takes_all();
+        techniques.direct |= !eye.context.lights.is_few();
         techniques.splats_cones |= eye.context.lights.has_beams();
         let of_tile = |(index, tile): (usize, &Window)| {
             let mut tracer = Tracer::new(scene, eye.settings.count_work);

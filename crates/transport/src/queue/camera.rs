@@ -9,7 +9,7 @@ use bilux_scene::cameras::Pinhole;
 use bilux_scene::{Ray, Scene};
 
 /// Calls `each` with every sample, its random numbers and its ray.
-pub(super) fn camera_rays(
+pub(crate) fn camera_rays(
     rays: &PinholeRays,
     scene: &Scene,
     places: &[SamplePlace],

@@ -1,12 +1,10 @@
-//! Loops over many paths, compiled for each level of instructions.
+//! Columns of many paths, on which stages work.
 //!
-//! A stage works on columns: one array of [`LANES`] numbers for each quantity. Its loops have no branches and no calls
-//! that are not inlined, so the compiler turns them into vector instructions. All operations are exactly rounded and
-//! nothing is contracted into fused products, so every level computes the same bits.
-#![allow(unsafe_code)] // One call for each level, after a check that the machine supports it.
+//! A column is one array of [`LANES`] numbers for each quantity. The loops of a [`Stage`] have no branches and no calls
+//! that are not inlined, so the compiler turns them into vector instructions of each level.
 
+pub(super) use bilux_math::cpu_level::{Stage, run_at};
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::CpuLevel;
 
 /// The length of a column: enough to hide the latency of divisions and square roots, small enough for the first cache.
 pub(super) const LANES: usize = 64;
@@ -55,54 +53,4 @@ pub(super) fn put_numbers<const N: usize>(columns: &mut [Column; N], i: usize, n
     for (column, number) in columns.iter_mut().zip(numbers) {
         column.0[i] = number;
     }
-}
-
-/// A loop over columns. `run` has to be `#[inline(always)]`.
-///
-/// It has one or two fields, each a reference or a number. Only then are they passed as arguments, of which the compiler
-/// knows that they do not overlap; otherwise it checks that at run time, and keeps a scalar loop beside the vector one.
-/// What else keeps a loop scalar is in docs/adr/0011-one-path-or-waves.md: look at its instructions after a change.
-pub(super) trait Stage {
-    fn run(self);
-}
-
-/// Runs a stage with the instructions of a level, or of the highest that the machine supports if that is lower.
-#[inline]
-pub(super) fn run_at(level: CpuLevel, stage: impl Stage) {
-    #[cfg(target_arch = "x86_64")]
-    match level.available() {
-        // SAFETY: the machine supports the level.
-        CpuLevel::Avx512 => return unsafe { avx512(stage) },
-        // SAFETY: as above.
-        CpuLevel::Avx2 => return unsafe { avx2(stage) },
-        // SAFETY: as above.
-        CpuLevel::Sse42 => return unsafe { sse42(stage) },
-        CpuLevel::Baseline => {}
-    }
-    let _ = level;
-    baseline(stage);
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-fn avx512(stage: impl Stage) {
-    stage.run();
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-fn avx2(stage: impl Stage) {
-    stage.run();
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "sse4.2,popcnt")]
-fn sse42(stage: impl Stage) {
-    stage.run();
-}
-
-/// A function of its own: inlined into its caller, a loop loses the information that its columns do not overlap.
-#[inline(never)]
-fn baseline(stage: impl Stage) {
-    stage.run();
 }

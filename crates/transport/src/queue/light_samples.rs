@@ -106,16 +106,19 @@ impl LightSamples {
         while begin < count {
             // Vertices in a row that sample the same light.
             let (number, _) = picked[begin];
-            let end = begin + picked[begin..count].iter().take_while(|(other, _)| *other == number).count();
+            let is_drawn = picked[begin].1 > 0.0;
+            let same =
+                |(other, probability): &&(usize, f32)| *other == number && (*probability > 0.0) == is_drawn;
+            let end = begin + picked[begin..count].iter().take_while(same).count();
+            if !is_drawn {
+                self.pdf.0[begin..end].fill(0.0);
+                begin = end;
+                continue;
+            }
             let light = &lights[number].light;
             light.sample_li_each(&self.receivers[begin..end], &mut self.samples);
             for (i, &(_, probability)) in picked.iter().enumerate().take(end).skip(begin) {
-                self.put(
-                    i,
-                    self.samples[i - begin].filter(|_| probability > 0.0),
-                    probability,
-                    light.is_delta(),
-                );
+                self.put(i, self.samples[i - begin], probability, light.is_delta());
             }
             begin = end;
         }

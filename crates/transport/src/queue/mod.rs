@@ -25,6 +25,7 @@ use crate::sampling::task::{Context, SampleState};
 use bilux_accel::Hit;
 use bilux_math::Rgb;
 use bilux_scene::{Ray, Scene, Shading, Tracer, Wavelength};
+pub(crate) use camera::camera_rays;
 use diffuse::Diffuse;
 use escapes::Escapes;
 use general::General;
@@ -147,7 +148,7 @@ impl PathQueue {
             }
         };
         if let Some(pinhole) = rays.of_pinhole() {
-            camera::camera_rays(&pinhole, rays.context.scene, places, |place, sampler, ray| {
+            camera_rays(&pinhole, rays.context.scene, places, |place, sampler, ray| {
                 begin(place, ray, SampleState::new(sampler, Wavelength::D));
             });
             return;

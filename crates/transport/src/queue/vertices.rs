@@ -156,33 +156,32 @@ impl Paths {
         media: impl Fn(&Path, usize, Vec3) -> Media,
     ) {
         let (choice, level) = (&context.lights, context.scene.cpu_level());
-        let mut picked = [(0, 0.0); LANES];
-        let rounds = choice.count();
+        let mut drawn = [(0, 0.0); LANES];
         if !choice.takes_all() {
             v.draw_numbers(level, 1);
-            choice.pick_each((0..v.count).map(|i| (vec3(&v.p, i), v.u[0].0[i])), &mut picked);
+            choice.pick_each((0..v.count).map(|i| (vec3(&v.p, i), v.u[0].0[i])), &mut drawn);
         }
         v.dimension = 1;
-        for round in 0..rounds {
+        for round in 0..choice.count() {
             v.dimension += 1;
-            if choice.takes_all() {
-                let probability = choice.probability(round, None);
-                if probability == 0.0 {
-                    continue;
-                }
-                picked = [(round, probability); LANES];
+            let by_all = choice.always().get(round);
+            let picked = by_all.map_or(drawn, |light| [*light; LANES]);
+            if picked.iter().take(v.count).all(|(_, probability)| *probability == 0.0) {
+                continue;
             }
             v.draw_points(level, v.dimension);
             let lights = context.scene.lights();
             let Vertices { count, times, p, u, light: samples, .. } = &mut *v;
             let points = Points { count: *count, times, p, u };
             match lights[picked[0].0].light.as_mesh() {
-                Some(mesh) if choice.takes_all() => samples.sample_mesh(points, mesh, picked[0].1, level),
+                Some(mesh) if by_all.is_some() => samples.sample_mesh(points, mesh, picked[0].1, level),
                 _ => samples.sample_lights(points, &picked, lights),
             }
             eval(v, level);
             run_at(level, Weigh { v });
-            self.list_shadow_rays(v, &picked, context, &media);
+            // The light of a vertex is summed in the order of the lists.
+            let list_of = |light: usize| if choice.is_few() { round } else { light };
+            self.list_shadow_rays(v, &picked, list_of, context, &media);
         }
     }
 
@@ -190,6 +189,7 @@ impl Paths {
         &mut self,
         v: &Vertices,
         picked: &[(usize, f32); LANES],
+        list_of: impl Fn(usize) -> usize,
         context: &Context,
         media: impl Fn(&Path, usize, Vec3) -> Media,
     ) {
@@ -210,7 +210,7 @@ impl Paths {
                 Through { media, distance: v.distance(i), panes: path.walk.panes(context, false), seed: 0 }
             });
             let n_light = vec3(&v.light.n_light, i);
-            self.connections.with(light).push(ray, n_light, media, contribution);
+            self.connections.with(list_of(light)).push(ray, n_light, media, contribution);
         }
     }
 }

@@ -11,6 +11,7 @@ mod classic_modes;
 mod common;
 mod dispersion;
 mod enclosures;
+mod faint_lights;
 mod features;
 mod footprint;
 mod holes;

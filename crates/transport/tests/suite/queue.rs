@@ -124,6 +124,7 @@ fn every_built_in_scene_is_the_same() {
 fn every_kind_of_surface_and_light_is_the_same() {
     assert_same("mixed", &built(&mixed()));
     assert_same("still life", &built(&still_life()));
+    assert_same("faint lights", &built(&crate::faint_lights::lamps(6.0, true)));
     let mut one_sided = mixed();
     let material = diffuse(Rgb::new(0.6, 0.3, 0.2)).with("visible_sides", "front");
     put(&mut one_sided, "one-sided", ball(Vec3::new(0.2, 0.5, 1.2), 0.5, 8, true), material.clone());

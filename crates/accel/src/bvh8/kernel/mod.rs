@@ -43,8 +43,8 @@ mod view;
 #[cfg(target_arch = "x86_64")]
 mod wide;
 
+use crate::CpuLevel;
 use crate::counters::{Count, NoCounters};
-use crate::cpu_level::CpuLevel;
 use crate::ray::{Hit, Query, Ray};
 
 pub(super) use blocker::{Blocker, primitive};

@@ -5,12 +5,15 @@
 //!
 //! Two rounds: where edges are dense, most pixels of a fit are on edges too, and in the second they have less noise.
 
-use super::fits::{Fits, LANES, RADIUS};
+use super::fits::{Fits, RADIUS};
 use super::guides::{ALBEDO, Guides, INVERSE, NORMAL};
+use super::lanes::{LANES, Lanes};
 use super::planes::{MARGIN, Planes};
 use crate::PictureError;
 use crate::limits::reserved;
-use bilux_math::parallel::{fill, for_each};
+use bilux_math::CpuLevel;
+use bilux_math::cpu_level::{Stage, run_at};
+use bilux_math::parallel::for_each;
 
 /// Number of times that edges are reconstructed.
 const ROUNDS: usize = 2;
@@ -30,20 +33,16 @@ const OF_DEPTHS: f32 = 9.0;
 ///
 /// # Errors
 /// Returns an error when the machine has no memory left.
-pub(super) fn rebuild(colours: &mut Planes, guides: &Guides) -> Result<(), PictureError> {
+pub(super) fn rebuild(colours: &mut Planes, guides: &Guides, level: CpuLevel) -> Result<(), PictureError> {
     let is_edge = edges(guides);
     let mut pixels = reserved("denoising", is_edge.iter().filter(|is_edge| **is_edge).count())?;
     pixels.extend((0..is_edge.len()).filter(|&i| is_edge[i]));
     for _ in 0..ROUNDS {
         colours.pad();
-        let of = |group: usize| {
-            // What is missing at the end is the first pixel once more.
-            let first = group * LANES;
-            let lanes = std::array::from_fn(|lane| *pixels.get(first + lane).unwrap_or(&pixels[first]));
-            Fits::around(colours, guides, lanes).blended(colours, lanes)
-        };
         let mut rebuilt = vec![[[0.0; LANES]; 4]; pixels.len().div_ceil(LANES)];
-        fill(&mut rebuilt, GROUPS, of);
+        let around = Around { colours, guides };
+        let groups = rebuilt.chunks_mut(GROUPS).zip(pixels.chunks(GROUPS * LANES));
+        for_each(groups, |(rebuilt, pixels)| run_at(level, Rebuild { around: &around, pixels, rebuilt }));
         for (pixels, rebuilt) in pixels.chunks(LANES).zip(rebuilt) {
             for (plane, lanes) in colours.planes.iter_mut().zip(rebuilt) {
                 pixels.iter().zip(lanes).for_each(|(&i, light)| plane[i] = light);
@@ -51,6 +50,31 @@ pub(super) fn rebuild(colours: &mut Planes, guides: &Guides) -> Result<(), Pictu
         }
     }
     Ok(())
+}
+
+/// Input of fits.
+struct Around<'a> {
+    colours: &'a Planes,
+    guides: &'a Guides,
+}
+
+/// Fits around pixels, in groups of [`LANES`], with the instructions of a level.
+struct Rebuild<'a> {
+    around: &'a Around<'a>,
+    pixels: &'a [usize],
+    rebuilt: &'a mut [[Lanes; 4]],
+}
+
+impl Stage for Rebuild<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let Around { colours, guides } = self.around;
+        for (pixels, rebuilt) in self.pixels.chunks(LANES).zip(self.rebuilt) {
+            // What is missing at the end is the first pixel once more.
+            let lanes = std::array::from_fn(|lane| *pixels.get(lane).unwrap_or(&pixels[0]));
+            *rebuilt = Fits::around(colours, guides, lanes).blended(colours, lanes);
+        }
+    }
 }
 
 /// Marks the pixels that have a neighbour with another surface; the result includes the margin around the picture,

@@ -1,11 +1,8 @@
 //! First-order fits of light to features, around several pixels side by side. [Moon 2014; Bitterli 2016, eq. 4]
 
 use super::guides::{ALBEDO, Guides, INVERSE, NORMAL, WITHIN};
+use super::lanes::{LANES, Lanes, add_products};
 use super::planes::Planes;
-
-/// Fits that are computed side by side.
-pub(super) const LANES: usize = 8;
-type Lanes = [f32; LANES];
 
 /// Radius of a fit, in pixels.
 pub(super) const RADIUS: usize = 2;
@@ -52,6 +49,7 @@ pub(super) struct Fits {
 
 impl Fits {
     /// Fits around pixels, given by where they are in the planes.
+    #[inline(always)]
     pub(super) fn around(colours: &Planes, guides: &Guides, middles: [usize; LANES]) -> Fits {
         let planes = &guides.planes.planes;
         let mut fits = Fits {
@@ -104,14 +102,15 @@ impl Fits {
         fits
     }
 
+    #[inline(always)]
     fn add(&mut self, features: &[Lanes; COLUMNS], light: &[Lanes; 3], weights: &Lanes) {
         for (i, feature) in features.iter().enumerate() {
             let scaled: Lanes = std::array::from_fn(|lane| weights[lane] * feature[lane]);
             for (sum, other) in self.matrix[i][i..].iter_mut().zip(&features[i..]) {
-                add_product(sum, &scaled, other);
+                add_products(sum, &scaled, other);
             }
             for (sum, light) in self.light[i].iter_mut().zip(light) {
-                add_product(sum, &scaled, light);
+                add_products(sum, &scaled, light);
             }
         }
         for (c, light) in light.iter().enumerate() {
@@ -126,6 +125,7 @@ impl Fits {
     }
 
     /// The light of the pixels according to the fits, and their mean squared residuals, summed over all channels.
+    #[inline(always)]
     fn solve(&mut self) -> ([Lanes; 3], Lanes) {
         let weights = self.matrix[ONE][ONE];
         let mut missed = self.squares;
@@ -141,10 +141,10 @@ impl Fits {
             for j in i + 1..COLUMNS {
                 let factor: Lanes = std::array::from_fn(|lane| -pivot[j][lane] * one_over[lane]);
                 for (to, from) in self.matrix[j][j..].iter_mut().zip(&pivot[j..]) {
-                    add_product(to, &factor, from);
+                    add_products(to, &factor, from);
                 }
                 for (to, from) in self.light[j].iter_mut().zip(&light) {
-                    add_product(to, &factor, from);
+                    add_products(to, &factor, from);
                 }
             }
         }
@@ -154,6 +154,7 @@ impl Fits {
     }
 
     /// Blends the light of the fits with the pixels' own, weighted by their expected errors: R, G, B and the variance that is left.
+    #[inline(always)]
     pub(super) fn blended(mut self, colours: &Planes, middles: [usize; LANES]) -> [Lanes; 4] {
         let (light, missed) = self.solve();
         let mut all = [0, 1, 2, 3].map(|plane| middles.map(|middle| colours.planes[plane][middle]));
@@ -174,15 +175,8 @@ impl Fits {
     }
 }
 
-#[inline]
-fn add_product(sum: &mut Lanes, a: &Lanes, b: &Lanes) {
-    for lane in 0..LANES {
-        sum[lane] += a[lane] * b[lane];
-    }
-}
-
 /// The samples of a plane in a row of each fit.
-#[inline]
+#[inline(always)]
 fn row(plane: &[f32], starts: [usize; LANES]) -> [Lanes; SIDE] {
     let mut row = [[0.0; LANES]; SIDE];
     for (lane, start) in starts.into_iter().enumerate() {

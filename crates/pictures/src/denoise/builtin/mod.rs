@@ -8,6 +8,7 @@
 mod edges;
 mod fits;
 mod guides;
+mod lanes;
 mod linear;
 mod outliers;
 mod pass;
@@ -17,9 +18,9 @@ use super::noisy::{self, Noisy, Source};
 use super::task::{Denoiser, DenoiserEntry};
 use crate::PictureError;
 use crate::limits::reserved;
-use bilux_math::Rgb;
 use bilux_math::parallel::{self, ThreadPool, for_each, install};
 use bilux_math::registry::Entry;
+use bilux_math::{CpuLevel, Rgb};
 use guides::Guides;
 use pass::pass;
 use planes::{Light, Planes};
@@ -32,7 +33,10 @@ pub(super) const ENTRY: DenoiserEntry = DenoiserEntry {
         source: "Dammertz 2010",
         parameters: &[],
     },
-    time: |task| Duration::from_nanos(task.pixels().saturating_mul(1600) / task.thread_count() as u64),
+    time: |task| {
+        let nanoseconds = if CpuLevel::detect() >= CpuLevel::Avx2 { 1000 } else { 1600 };
+        Duration::from_nanos(task.pixels().saturating_mul(nanoseconds) / task.thread_count() as u64)
+    },
     is_library: false,
     find: |task| match Builtin::new(task.threads) {
         Ok(builtin) => Ok(Box::new(builtin)),
@@ -52,13 +56,15 @@ const REACH: usize = 34 + 1 + 2 + 1 + edges::REACH;
 
 pub(super) struct Builtin {
     pool: ThreadPool,
+    /// The instructions that it uses; the pictures are the same.
+    level: CpuLevel,
 }
 
 impl Builtin {
     pub(super) fn new(threads: usize) -> Result<Builtin, PictureError> {
         let pool = parallel::pool(threads, None)
             .map_err(|why| PictureError::NoDenoiser { what: format!("cannot start its threads: {why}") })?;
-        Ok(Builtin { pool })
+        Ok(Builtin { pool, level: CpuLevel::detect() })
     }
 }
 
@@ -74,7 +80,7 @@ impl Denoiser for Builtin {
         for strip in 0..strips {
             let rows = height * strip / strips..height * (strip + 1) / strips;
             let around = rows.start.saturating_sub(REACH)..(rows.end + REACH).min(height);
-            let smooth = install(&self.pool, || smoothed(source.rows(around.clone())?))?;
+            let smooth = install(&self.pool, || smoothed(source.rows(around.clone())?, self.level))?;
             let kept = (rows.start - around.start) * width..(rows.end - around.start) * width;
             all.extend_from_slice(&smooth[kept]);
         }
@@ -83,7 +89,7 @@ impl Denoiser for Builtin {
 }
 
 /// The sum of the denoised layers. What is not needed any more is freed as early as possible: this takes some hundred bytes per pixel.
-fn smoothed(mut noisy: Noisy) -> Result<Vec<Rgb>, PictureError> {
+fn smoothed(mut noisy: Noisy, level: CpuLevel) -> Result<Vec<Rgb>, PictureError> {
     let coverage = noisy.take_coverage();
     let (size, layers) = ((noisy.width, noisy.height), std::mem::take(&mut noisy.layers));
     let albedo = noisy.albedo.as_deref();
@@ -96,7 +102,7 @@ fn smoothed(mut noisy: Noisy) -> Result<Vec<Rgb>, PictureError> {
     drop(noisy);
     let mut sum: Option<Planes> = None;
     for light in lights {
-        let mut light = smooth_light(light, &guides)?.planes;
+        let mut light = smooth_light(light, &guides, level)?.planes;
         if has_albedo {
             multiply(&mut light, &guides);
         }
@@ -107,7 +113,7 @@ fn smoothed(mut noisy: Noisy) -> Result<Vec<Rgb>, PictureError> {
     }
     let Some(mut colours) = sum else { return Ok(Vec::new()) };
     if has_albedo {
-        edges::rebuild(&mut colours, &guides)?;
+        edges::rebuild(&mut colours, &guides, level)?;
     }
     let mut smooth: Vec<Rgb> = (0..size.0 * size.1).map(|i| colours.rgb(i)).collect();
     noisy::multiply(&mut smooth, coverage.as_deref());
@@ -128,11 +134,52 @@ fn multiply(light: &mut Planes, guides: &Guides) {
 }
 
 /// The denoised light of a layer.
-fn smooth_light(mut light: Light, guides: &Guides) -> Result<Light, PictureError> {
+fn smooth_light(mut light: Light, guides: &Guides, level: CpuLevel) -> Result<Light, PictureError> {
     let mut smooth = Light { planes: Planes::new(light.planes.width, light.planes.height, 4)? };
     for step in STEPS {
-        pass(&light, guides, step, &mut smooth);
+        pass(&light, guides, step, level, &mut smooth);
         std::mem::swap(&mut light, &mut smooth);
     }
     Ok(light)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Layer;
+    use super::*;
+    use bilux_math::hash::{hash_words, unit_f32};
+
+    const SIZE: (usize, usize) = (45, 37);
+
+    /// A picture of which everything differs from pixel to pixel: two layers, edges, fog, an outline.
+    fn noisy() -> Noisy {
+        let number = |i: usize, k: u64| unit_f32(hash_words([i as u64, k]) as u32);
+        let plane = |of: &dyn Fn(usize) -> Rgb| (0..SIZE.0 * SIZE.1).map(of).collect::<Vec<Rgb>>();
+        let colour =
+            |k: u64| plane(&move |i| Rgb::new(number(i, k), 2.0 * number(i, k + 1), number(i, k + 2)));
+        let layer = |k: u64| Layer { colour: colour(k), variance: Some(colour(k + 3)) };
+        let numbers = |k: u64, scale: f32| (0..SIZE.0 * SIZE.1).map(move |i| scale * number(i, k)).collect();
+        let block = |i: usize| (i % SIZE.0) / 5 + i / SIZE.0 / 7;
+        Noisy {
+            width: SIZE.0,
+            height: SIZE.1,
+            layers: vec![layer(0), layer(10)],
+            coverage: Some(numbers(20, 1.0)),
+            albedo: Some(plane(&|i| Rgb::new(0.8, 0.5, 0.2) * ((block(i) % 3) as f32 * 0.4 + 0.1))),
+            normal: Some((0..SIZE.0 * SIZE.1).map(|i| [0.0, (block(i) % 2) as f32, 0.6]).collect()),
+            depth: Some((0..SIZE.0 * SIZE.1).map(|i| 3.0 + (i % SIZE.0) as f32 * 0.01).collect()),
+            haze: Some(numbers(21, 0.5)),
+        }
+    }
+
+    #[test]
+    fn all_levels_of_instructions_give_the_same_bits() {
+        let baseline = smoothed(noisy(), CpuLevel::Baseline).unwrap();
+        assert!(baseline.iter().any(|c| c.r > 0.0) && baseline.iter().all(|c| c.is_finite()));
+        for level in CpuLevel::ALL.into_iter().filter(|&level| level <= CpuLevel::detect()) {
+            let smooth = smoothed(noisy(), level).unwrap();
+            let bits = |c: &Rgb| [c.r.to_bits(), c.g.to_bits(), c.b.to_bits()];
+            assert!(smooth.iter().map(bits).eq(baseline.iter().map(bits)), "{}", level.name());
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! Planes with a margin around them, so that neighbours beyond the edge need no special case.
 
+use super::lanes::COLUMNS;
 use super::outliers;
 use crate::PictureError;
 use crate::denoise::Layer;
@@ -9,6 +10,9 @@ use bilux_math::parallel::{for_each, map, table};
 
 /// The maximum reach of a pass: two steps and half a patch.
 pub(super) const MARGIN: usize = 2 * 8 + 1;
+
+/// Numbers after the end of each plane, which a tile at the end of its last row may read.
+const SLACK: usize = 2 * COLUMNS;
 
 /// Planes of a picture, each with a margin that repeats its edge.
 #[derive(Clone)]
@@ -21,7 +25,7 @@ pub(super) struct Planes {
 impl Planes {
     /// Planes of zeros.
     pub(super) fn new(width: usize, height: usize, count: usize) -> Result<Planes, PictureError> {
-        let size = (width + 2 * MARGIN).saturating_mul(height + 2 * MARGIN);
+        let size = (width + 2 * MARGIN).saturating_mul(height + 2 * MARGIN).saturating_add(SLACK);
         let planes = map(0..count, |_| zeroed("denoising", size)).into_iter().collect::<Result<_, _>>()?;
         Ok(Planes { width, height, planes })
     }

@@ -14,7 +14,7 @@ const INTERPRETERS: &[&str] =
     if cfg!(target_os = "windows") { &["python3.exe", "python.exe"] } else { &["python3"] };
 
 /// Folders of the package, derived from where Python is installed: the active environment, the interpreters on the
-/// path, the user's own packages. Nothing is executed.
+/// path, pyenv's version behind its shim, the user's own packages. Nothing is executed.
 pub(super) fn packages() -> Vec<PathBuf> {
     let mut found = Vec::new();
     for prefix in prefixes() {
@@ -24,25 +24,64 @@ pub(super) fn packages() -> Vec<PathBuf> {
             }
         }
     }
+    found.extend(in_path().filter(|package| package.is_dir()));
     found
+}
+
+/// The package in the folders of `PYTHONPATH`.
+fn in_path() -> impl Iterator<Item = PathBuf> {
+    let path = env::var_os("PYTHONPATH").unwrap_or_default();
+    let folders: Vec<PathBuf> = env::split_paths(&path).filter(|folder| folder.is_absolute()).collect();
+    folders.into_iter().map(|folder| folder.join(NAME))
+}
+
+/// Interpreters on the path, in its order.
+fn on_path() -> Vec<PathBuf> {
+    let path = env::var_os("PATH").unwrap_or_default();
+    env::split_paths(&path)
+        .flat_map(|bin| INTERPRETERS.iter().map(move |name| bin.join(name)))
+        .filter(|interpreter| interpreter.is_file())
+        .collect()
 }
 
 fn prefixes() -> Vec<PathBuf> {
     let named = ["VIRTUAL_ENV", "CONDA_PREFIX"].into_iter().filter_map(env::var_os).map(PathBuf::from);
-    let path = env::var_os("PATH").unwrap_or_default();
-    let on_path: Vec<PathBuf> = env::split_paths(&path)
-        .flat_map(|bin| INTERPRETERS.iter().map(move |name| bin.join(name)))
-        .filter(|interpreter| interpreter.exists())
+    let on_path: Vec<PathBuf> = on_path()
+        .into_iter()
         .flat_map(|interpreter| {
             // A virtual environment's interpreter is a link to the one it was created from: packages may be next to
             // either.
+            let version = version_behind(&interpreter);
             let resolved = interpreter.canonicalize().ok();
-            [Some(interpreter), resolved].into_iter().flatten()
+            let prefix = |interpreter: PathBuf| Some(interpreter.parent()?.parent()?.to_owned());
+            version.into_iter().chain([Some(interpreter), resolved].into_iter().flatten().filter_map(prefix))
         })
-        .filter_map(|interpreter| Some(interpreter.parent()?.parent()?.to_owned()))
         .collect();
     let own = env::var_os("HOME").map(|home| Path::new(&home).join(".local"));
     named.chain(on_path).chain(own).collect()
+}
+
+/// Folder of the version that pyenv starts where this interpreter is its shim: the first that is named by `PYENV_VERSION`, by a file
+/// `.python-version` in the working directory or above it, or by its own file `version`.
+fn version_behind(shim: &Path) -> Option<PathBuf> {
+    let shims = shim.parent().filter(|folder| folder.ends_with("shims"))?;
+    let root = shims.parent()?;
+    let named = env::var("PYENV_VERSION").ok().filter(|named| !named.is_empty());
+    let here = env::current_dir().unwrap_or_default();
+    let mut files =
+        here.ancestors().map(|folder| folder.join(".python-version")).chain([root.join("version")]);
+    let named = named.or_else(|| files.find_map(|file| std::fs::read_to_string(file).ok()))?;
+    let version = named.split([':', '\n']).next()?.trim();
+    let folder = root.join("versions").join(version);
+    (!version.is_empty() && !version.contains(['/', '\\']) && folder.is_dir()).then_some(folder)
+}
+
+/// Whether an interpreter is a script that knows what no folder reveals.
+fn is_script(interpreter: &Path) -> bool {
+    use std::io::Read;
+    let mut begin = [0; 2];
+    let read = std::fs::File::open(interpreter).and_then(|mut file| file.read_exact(&mut begin));
+    read.is_ok() && &begin == b"#!" && version_behind(interpreter).is_none()
 }
 
 /// The package in every `lib/python3.x/site-packages` of a prefix, in order of names.
@@ -70,11 +109,12 @@ const QUESTION: &str = "import sys; sys.path = [p for p in sys.path if p]; impor
 /// An interpreter that has not answered after this time is abandoned.
 const PATIENCE: Duration = Duration::from_secs(3);
 
-/// The answer of `python3` itself, which knows pyenv's versions and environments that no folder reveals. It is asked once:
-/// that takes longer than many a thumbnail.
+/// The answer of `python3` itself, where it is a script of a manager of versions and environments that no folder reveals. It is asked
+/// once: that takes longer than many a thumbnail.
 pub(super) fn asked() -> Vec<PathBuf> {
     static ANSWER: OnceLock<Vec<PathBuf>> = OnceLock::new();
-    ANSWER.get_or_init(ask).clone()
+    let is_asked = || on_path().first().is_some_and(|interpreter| is_script(interpreter));
+    ANSWER.get_or_init(|| if is_asked() { ask() } else { Vec::new() }).clone()
 }
 
 fn ask() -> Vec<PathBuf> {

@@ -140,7 +140,7 @@ impl Chooser for Auto {
         let mut merging = self.merging;
         // A point on each of few lights is always sampled; of many, photons find the nearest by themselves, and what beams light in fog light
         // subpaths find best.
-        merging.techniques.direct = !lights.takes_all() || lights.has_beams();
+        merging.techniques.direct = !lights.is_few() || lights.has_beams();
         if merging.radius == 0.0 {
             let pixel = pilot::pixel_radius(&round(0).eye, film) / scene.bounds().radius();
             merging.radius = if pixel > 0.0 { (PIXELS * pixel).min(WIDEST) } else { merging::RADIUS };

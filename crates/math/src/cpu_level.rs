@@ -1,4 +1,7 @@
-//! The instruction sets that kernels may use.
+//! The instruction sets that kernels may use, and loops that are compiled for each of them.
+//!
+//! All operations of such a loop are exactly rounded and nothing is contracted into fused products, so every level computes the same bits.
+#![allow(unsafe_code)] // One call for each level, after a check that the machine supports it.
 
 /// Levels of instruction sets, each including those before it. The level is chosen when a structure is built, never
 /// per ray, and never changes an answer.
@@ -60,4 +63,55 @@ impl Default for CpuLevel {
     fn default() -> CpuLevel {
         CpuLevel::detect()
     }
+}
+
+/// A loop over arrays of numbers. `run` has to be `#[inline(always)]`.
+///
+/// It has one or two fields, each a reference or a number. Only then are they passed as arguments, of which the compiler
+/// knows that they do not overlap; otherwise it checks that at run time, and keeps a scalar loop beside the vector one.
+/// What else keeps a loop scalar is in docs/adr/0011-one-path-or-waves.md: look at its instructions after a change.
+pub trait Stage {
+    /// Runs it.
+    fn run(self);
+}
+
+/// Runs a stage with the instructions of a level, or of the highest that the machine supports if that is lower.
+#[inline]
+pub fn run_at(level: CpuLevel, stage: impl Stage) {
+    #[cfg(target_arch = "x86_64")]
+    match level.available() {
+        // SAFETY: the machine supports the level.
+        CpuLevel::Avx512 => return unsafe { avx512(stage) },
+        // SAFETY: as above.
+        CpuLevel::Avx2 => return unsafe { avx2(stage) },
+        // SAFETY: as above.
+        CpuLevel::Sse42 => return unsafe { sse42(stage) },
+        CpuLevel::Baseline => {}
+    }
+    let _ = level;
+    baseline(stage);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+fn avx512(stage: impl Stage) {
+    stage.run();
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+fn avx2(stage: impl Stage) {
+    stage.run();
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "sse4.2,popcnt")]
+fn sse42(stage: impl Stage) {
+    stage.run();
+}
+
+/// A function of its own: inlined into its caller, a loop loses the information that its columns do not overlap.
+#[inline(never)]
+fn baseline(stage: impl Stage) {
+    stage.run();
 }
