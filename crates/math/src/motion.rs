@@ -462,7 +462,7 @@ mod tests {
         assert_eq!(place.then(&flattened).parts().len(), 1, "what is still is one transform");
     }
 
-    /// What stands still on both sides of a joint becomes one transform, in the order in which it is applied.
+    /// Transforms on both sides of a joint become one, in the order in which they are applied.
     #[test]
     fn what_follows_a_motion_is_applied_in_its_order() {
         let uneven = Transform::scale(Vec3::new(2.0, 0.5, 1.0)).unwrap();

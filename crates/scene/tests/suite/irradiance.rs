@@ -332,7 +332,7 @@ fn a_light_that_shadows_itself_is_detected() {
     assert!(off(found, place.expected) > 0.5, "{found}");
 }
 
-/// Where a light shines, the tree of lights chooses it: its extent leaves no such point out, which would be dark among many lights. That of a spot
+/// The tree of lights chooses a light wherever it shines: its extent leaves no such point out, which would be dark among many lights. That of a spot
 /// leaves out what is outside of its cone.
 #[test]
 fn extents_leave_no_point_out_that_a_light_reaches() {

@@ -118,8 +118,8 @@ fn cook_without_extents_is_whitted_to_the_bit() {
     }
 }
 
-/// How far the rays of a pixel's samples are from its middle, from that of the lens and from that of the shutter's time, at most: each as a part of
-/// what filter, aperture and shutter allow.
+/// Greatest distances of the rays of a pixel's samples from its middle, from that of the lens and from that of the shutter's time: each as a part of what
+/// filter, aperture and shutter allow.
 fn spread_of(spec: &Spec) -> [f32; 3] {
     let mut builder = SceneBuilder::default();
     let eye =
