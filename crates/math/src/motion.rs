@@ -462,6 +462,23 @@ mod tests {
         assert_eq!(place.then(&flattened).parts().len(), 1, "what is still is one transform");
     }
 
+    /// Transforms on both sides of a joint become one, in the order in which they are applied.
+    #[test]
+    fn what_follows_a_motion_is_applied_in_its_order() {
+        let uneven = Transform::scale(Vec3::new(2.0, 0.5, 1.0)).unwrap();
+        let turned = Transform::rotate(Vec3::new(1.0, 2.0, 3.0), 0.8).unwrap();
+        let moved = Transform::translate(Vec3::new(3.0, -1.0, 0.5)).unwrap();
+        let after = [uneven, turned, moved];
+        let chain = after.iter().fold(spin(), |chain, next| chain.then(&Motion::still(*next)));
+        assert_eq!(chain.parts().len(), 2, "what is still is one transform");
+        for time in [0.0, 1.7, 2.5, 4.0] {
+            let p = Vec3::new(0.3, -0.7, 1.1);
+            let wanted = after.iter().fold(spin().at(time).point(p), |p, next| next.point(p));
+            let apart = chain.at(time).point(p) - wanted;
+            assert!(apart.length() < 1e-5, "{time}: {apart}");
+        }
+    }
+
     #[test]
     fn rejects_keys_without_an_invertible_transform_between_them() {
         let sound = key(0.0, Vec3::ZERO, Quat::IDENTITY, Vec3::ONE);

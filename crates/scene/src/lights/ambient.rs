@@ -17,6 +17,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
         source: "Phong 1975",
         parameters: &[colour("colour", "light that reaches every point equally", "", "0.3"), super::GROUP],
     },
+    surrounds: false,
     flux_per_intensity: super::NO_INTENSITY,
     build: |reader, _| Ok(BuiltLight::Light(Arc::new(Ambient { colour: reader.colour("colour") }))),
 };

@@ -37,6 +37,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             super::GROUP,
         ],
     },
+    surrounds: true,
     flux_per_intensity: super::NO_INTENSITY,
     build: |reader, _| {
         let zenith = reader.colour("zenith");

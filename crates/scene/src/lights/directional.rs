@@ -33,6 +33,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             GROUP,
         ],
     },
+    surrounds: false,
     flux_per_intensity: super::NO_INTENSITY,
     build: |reader, _| {
         let towards = (-reader.vector("direction")).try_normalize().ok_or_else(|| {

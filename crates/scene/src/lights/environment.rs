@@ -46,6 +46,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             super::GROUP,
         ],
     },
+    surrounds: true,
     flux_per_intensity: super::NO_INTENSITY,
     build: |reader, textures| {
         let (scale, backdrop) = (reader.colour("scale"), reader.bool("backdrop"));

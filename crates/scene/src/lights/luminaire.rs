@@ -48,6 +48,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             GROUP,
         ],
     },
+    surrounds: false,
     flux_per_intensity: super::NO_INTENSITY,
     build,
 };

@@ -92,6 +92,8 @@ pub enum BuiltLight {
 pub struct LightEntry {
     /// Name, summary, source, parameters.
     pub entry: Entry,
+    /// Whether its light comes from everywhere around the scene, as that of an environment or a sky.
+    pub surrounds: bool,
     /// The flux in W of an intensity of 1 W/sr, for lights with an intensity.
     pub flux_per_intensity: fn(&Reader) -> f32,
     /// Makes one from its parameters and the scene's textures.
@@ -112,6 +114,11 @@ pub static LIGHTS: &[LightEntry] = &[
     perez_sky::ENTRY,
     ambient::ENTRY,
 ];
+
+/// True for the kinds of light that come from everywhere around the scene.
+pub fn surrounds(kind: &str) -> bool {
+    LIGHTS.iter().any(|row| row.entry.name == kind && row.surrounds)
+}
 
 /// Makes the light that a spec describes.
 ///

@@ -47,6 +47,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             super::GROUP,
         ],
     },
+    surrounds: true,
     flux_per_intensity: super::NO_INTENSITY,
     build: |reader, _| {
         let around = Surroundings::read(reader);

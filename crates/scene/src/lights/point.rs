@@ -24,6 +24,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             GROUP,
         ],
     },
+    surrounds: false,
     flux_per_intensity: super::ALL_AROUND,
     build: |reader, _| {
         Ok(BuiltLight::Light(Arc::new(Point {

@@ -35,6 +35,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             GROUP,
         ],
     },
+    surrounds: false,
     // Each side sends π times its intensity.
     flux_per_intensity: |reader| if reader.text("sides") == "front" { PI } else { 2.0 * PI },
     build: |reader, _| {

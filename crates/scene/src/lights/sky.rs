@@ -31,6 +31,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             super::GROUP,
         ],
     },
+    surrounds: true,
     flux_per_intensity: super::NO_INTENSITY,
     build: |reader, _| {
         let degrees = |key: &str| reader.number(key).to_radians();

@@ -42,6 +42,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             GROUP,
         ],
     },
+    surrounds: false,
     flux_per_intensity: super::ALL_AROUND,
     build: |reader, _| {
         let radius = reader.number("radius");

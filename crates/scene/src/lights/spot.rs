@@ -29,6 +29,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             GROUP,
         ],
     },
+    surrounds: false,
     flux_per_intensity: |reader| {
         let [cos_inner, cos_outer] = cosines(reader);
         flux_per_intensity(cos_inner, cos_outer)

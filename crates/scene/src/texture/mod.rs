@@ -397,5 +397,9 @@ mod tests {
         let quarter = UvTransform::new([0.0, 0.0], std::f32::consts::FRAC_PI_2, [1.0, 1.0]);
         let turned = quarter.apply(Vec2::new(0.0, 1.0));
         assert!((turned - Vec2::X).length() < 1e-6, "{turned}");
+        // A patch that is turned is as wide along one coordinate as it was along the other, by its factor.
+        let wide =
+            UvTransform::new([0.1, 0.7], std::f32::consts::FRAC_PI_2, [3.0, 0.5]).widen(Vec2::new(0.4, 0.2));
+        assert!((wide - Vec2::new(0.1, 1.2)).length() < 1e-6, "{wide}");
     }
 }

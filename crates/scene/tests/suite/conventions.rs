@@ -88,6 +88,24 @@ fn the_sky_puts_its_sun_at_the_given_elevation_and_azimuth() {
     assert!(beside(FRAC_PI_2) > 1.5 * beside(0.0) && beside(FRAC_PI_2) > 1.5 * beside(-FRAC_PI_2));
 }
 
+/// The ground below a sky reflects what it receives of the sky and of the sun, as level paper of its albedo: nothing of a sun below the horizon, but
+/// not less than nothing.
+#[test]
+fn the_ground_below_a_sky_is_lit_by_the_sun_only_above_the_horizon() {
+    for (kind, sky, sun) in [("cie-sky", "irradiance", "sun"), ("perez-sky", "diffuse", "direct")] {
+        for (degrees, sine) in [(30.0f32, 0.5), (0.0, 0.0), (-30.0, 0.0)] {
+            let spec = Spec::new("", kind).with("elevation", degrees).with("ground", 0.3f32);
+            let spec = spec.with(sky, Rgb::new(2.0, 3.0, 4.0)).with(sun, Rgb::new(7.0, 5.0, 6.0));
+            let scene = built(&SceneBuilder { lights: vec![spec], ..SceneBuilder::default() });
+            let ground = scene.lights()[0].light.le(Vec3::new(0.3, -0.9, 0.2).normalize()).to_array();
+            for (channel, (sky, sun)) in [(2.0, 7.0), (3.0, 5.0), (4.0, 6.0)].into_iter().enumerate() {
+                let (found, wanted) = (f64::from(ground[channel]), 0.3 * (sky + sine * sun) / PI);
+                assert!((found / wanted - 1.0).abs() < 1e-4, "{kind}, {degrees}: {found}, not {wanted}");
+            }
+        }
+    }
+}
+
 /// The maximum angle from `towards` at which a light shines, by bisection, in radians.
 fn edge(light: &dyn Light, towards: DVec3, most: f64) -> f64 {
     let across = towards.any_orthonormal_vector();

@@ -1,9 +1,12 @@
 //! The irradiance of every light against its closed form, near and far: by light samples alone, by directions that hit it alone, and
 //! by both with the balance heuristic. All of it is quadrature, so there is no noise.
 
+use bilux_math::hash::hash_words;
 use bilux_math::transcendental::{atan2_f64, sin_cos};
 use bilux_math::{DVec3, Frame, Motion, Transform, Vec2, Vec3, warp};
 use bilux_scene::mesh::shapes;
+
+use bilux_scene::lights::{LightExtent, LightTree};
 use bilux_scene::{
     AccelChoice, Goniometer, IntensityDistribution, LIGHTS, Light, LightSample, Object, Ray, Scene,
     SceneBuilder, Spec, Surface, Tracer,
@@ -328,4 +331,41 @@ fn a_light_that_shadows_itself_is_detected() {
         Some((if is_seen { value } else { 0.0 }, sample.point))
     });
     assert!(off(found, place.expected) > 0.5, "{found}");
+}
+
+/// The tree of lights chooses a light wherever it shines: its extent leaves no such point out, which would be dark among many lights. That of a spot
+/// leaves out what is outside of its cone.
+#[test]
+fn extents_leave_no_point_out_that_a_light_reaches() {
+    let mut lights: Vec<Spec> = LIGHTS.iter().map(|row| Spec::new("", row.entry.name)).collect();
+    let spot = || Spec::new("", "spot").with("look_at", Vec3::new(1.0, 2.0, -0.5)).with("angle", 40.0f32);
+    lights.extend([5.0f32, 40.0].map(|inner| spot().with("inner_angle", inner)));
+    lights.push(Spec::new("", "rect").with("sides", "front"));
+    let (mut extents, mut left_out) = (0, 0);
+    for spec in lights {
+        let spec = match spec.kind.as_str() {
+            "rect" | "sphere" => spec.with("intensity", 3.0f32),
+            _ => spec,
+        };
+        let name = format!("{} {:?}", spec.kind, spec.parameters);
+        let builder = SceneBuilder { lights: vec![spec], ..SceneBuilder::default() };
+        let scene = builder.build(&AccelChoice::default(), [0.0, 0.0], 1.0).unwrap();
+        let light = &*scene.lights()[0].light;
+        let Some(extent) = light.extent([0.0, 0.0]) else { continue };
+        extents += 1;
+        let tree = LightTree::new(&[(extent, 1.0), (LightExtent::all_around(extent.bounds), 1.0)]);
+        for i in 0..2000u64 {
+            let number = |k: u64| (hash_words([i, k]) >> 40) as f32 / (1u64 << 24) as f32;
+            // The lights of the table are at (0, 5, 0).
+            let p = Vec3::new(number(0), number(1), number(2)) * 8.0 + Vec3::new(-4.0, 1.0, -4.0);
+            let shines = (0..4).any(|j| {
+                let u = Vec2::new(number(3 + 2 * j), number(4 + 2 * j));
+                light.sample_li(p, 0.0, u).is_some_and(|sample| !sample.li.is_black())
+            });
+            let is_chosen = tree.probability(p, 0) > 0.0;
+            assert!(is_chosen || !shines, "{name}: dark at {p}");
+            left_out += usize::from(!is_chosen);
+        }
+    }
+    assert!(extents >= 8 && left_out > 1000, "{extents} lights, {left_out} points");
 }

@@ -5,6 +5,8 @@ use bilux_math::transcendental::asin;
 use bilux_math::{DMat4, DVec3, Transform, Vec2, Vec3};
 use bilux_scene::cameras::{self, CameraSpec};
 use bilux_scene::mesh::shapes;
+
+use bilux_scene::lights::{LIGHTS, surrounds};
 use bilux_scene::presets::{Ground, PRESETS, Studio, apply, complete};
 use bilux_scene::{AccelChoice, Axis, CameraSample, Mesh, Object, SceneBuilder, Spec, UpHint, Value};
 use std::sync::Arc;
@@ -263,11 +265,20 @@ fn surroundings_do_not_keep_a_model_from_standing_upright() {
     };
     let (upright, as_it_is) = (placed(None), format!("{:?}", bare.objects[0].motion.at(0.0).matrix()));
     assert_ne!(upright, as_it_is);
-    for kind in ["environment", "sky", "ambient"] {
-        assert_eq!(placed(Some(Spec::new("around", kind))), upright, "{kind}");
+    for row in LIGHTS {
+        let kind = row.entry.name;
+        let spec = match kind {
+            "rect" | "sphere" => Spec::new("it", kind).with("intensity", 3.0f32),
+            _ => Spec::new("it", kind),
+        };
+        let alone = SceneBuilder { lights: vec![spec.clone()], ..SceneBuilder::default() };
+        let alone = alone.build(&AccelChoice::default(), [0.0, 0.0], 1.0).unwrap();
+        let is_around = alone.lights().iter().any(|one| one.light.is_infinite() && !one.light.is_delta());
+        assert_eq!(surrounds(kind), is_around, "{kind}");
+        let wanted = if is_around || kind == "ambient" { &upright } else { &as_it_is };
+        assert_eq!(&placed(Some(spec)), wanted, "{kind}");
     }
     assert_eq!(placed(Some(Spec::new("behind", "environment").with("backdrop", true))), upright);
-    assert_eq!(placed(Some(Spec::new("lamp", "point"))), as_it_is);
 }
 
 #[test]

@@ -204,6 +204,24 @@ fn mixes_glow_by_either_part() {
     }
 }
 
+/// A mix scatters as the part of it that scatters does, whichever that is.
+#[test]
+fn mixes_scatter_as_the_part_that_scatters() {
+    let clear = Spec::new("clear", "dielectric").with("absorption", 0.5f32);
+    let milk =
+        Spec::new("milk", "dielectric").with("scattering", 4.0f32).with("scattering_anisotropy", 0.6f32);
+    for (a, b) in [(&milk, &clear), (&clear, &milk)] {
+        let mut builder = builder();
+        let [a, b] = [a, b].map(|spec| bilux_scene::Value::Material(builder.add_material(spec.clone())));
+        let mix = builder.add_material(Spec::new("", "mix").with("a", a).with("b", b).with("amount", 0.3f32));
+        builder.objects[0].material = mix;
+        let scene = builder.build(&AccelChoice::default(), [0.0, 0.0], 1.0).unwrap();
+        let medium = scene.material_of(0).medium().unwrap();
+        assert_eq!((medium.sigma_s, medium.sigma_a), (Rgb::grey(4.0), Rgb::grey(0.5)));
+        assert_eq!(medium.phase.mean_cosine(), 0.6);
+    }
+}
+
 /// Objects that are placed, and then move, are where both put them at each time while the shutter is open.
 #[test]
 fn what_is_placed_before_it_moves_is_seen_on_its_way() {

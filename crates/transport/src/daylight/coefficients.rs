@@ -172,4 +172,15 @@ mod tests {
         assert!((f64::from(all.error) / (PI * deviation / n.sqrt()) - 1.0).abs() < 1e-6, "{all:?}");
         assert_eq!(reflected, PartOfSky { mean: 0.0, error: 0.0 });
     }
+
+    /// Of eleven samples the first three sequences have two: where all are alike, there is no error.
+    #[test]
+    fn sequences_may_have_different_numbers_of_samples() {
+        let alike = (0..REPLICATES).map(|i| if i < 3 { [4.0, 1.0] } else { [2.0, 0.5] }).collect();
+        let mut row = [[PartOfSky::default(); 2]];
+        Sums { replicates: alike }.estimates(REPLICATES + 3, &mut row);
+        for (found, wanted) in row[0].iter().zip([2.0 * PI, 0.5 * PI]) {
+            assert!((f64::from(found.mean) / wanted - 1.0).abs() < 1e-6 && found.error < 1e-6, "{row:?}");
+        }
+    }
 }

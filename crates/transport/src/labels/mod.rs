@@ -65,7 +65,7 @@ pub fn labels(
     let look = Look {
         flows: [wanted.next, wanted.previous].map(|moment| Some(Flow::new(&rays, moment?))),
         follows: wanted.aovs.contains(&Aov::Occluded),
-        to_camera: camera.matrices(scene.shutter()[0]).to_camera,
+        to_camera: camera.matrices(rays.opens()).to_camera,
         channels: channels(wanted.aovs),
         rays,
         wanted,
@@ -84,6 +84,7 @@ struct Look<'a> {
     flows: [Option<Flow<'a>>; 2],
     /// Whether it is asked what is hidden there.
     follows: bool,
+    /// To the space of the camera when the shutter opens.
     to_camera: Mat4,
     channels: Vec<Channel>,
 }
@@ -120,10 +121,11 @@ impl Look<'_> {
         let object = surface.object;
         let of_object = |numbers: &[u32]| numbers.get(object as usize).copied().unwrap_or_default();
         let (triangle, hit) = (geometry.triangle_of(&labelled.hit), &labelled.hit);
-        let turned = self.to_camera.transform_vector3(normal);
+        let to_camera = self.to_camera_at(surface.time);
+        let turned = to_camera.transform_vector3(normal);
         let mut label = Label {
             depth: surface.t,
-            z_depth: self.to_camera.transform_point3(surface.p).z,
+            z_depth: to_camera.transform_point3(surface.p).z,
             normal,
             camera_normal: Vec3::new(turned.x, turned.y, -turned.z),
             object: object + 1,
@@ -142,6 +144,11 @@ impl Look<'_> {
             (label.motion[i], label.occluded[i]) = (there.motion, there.is_hidden);
         }
         label
+    }
+
+    /// To the space of the camera when a row is exposed: with a rolling shutter it may have moved on.
+    fn to_camera_at(&self, time: f32) -> Mat4 {
+        if time == self.rays.opens() { self.to_camera } else { self.rays.camera.matrices(time).to_camera }
     }
 
     fn assembled(&self, window: Window, tiles: &[Vec<u32>]) -> Result<Picture, FilmError> {

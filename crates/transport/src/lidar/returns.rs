@@ -13,10 +13,9 @@ impl Scanner {
         for group in echoes.chunk_by(|a, b| b.range - a.range <= self.separation) {
             let intensity: f64 = group.iter().map(|echo| echo.power).sum();
             let range = group.iter().map(|echo| echo.power * echo.range).sum::<f64>() / intensity;
-            let strongest = group.iter().max_by(|a, b| a.power.total_cmp(&b.power));
             let is_measured = (self.range[0]..=self.range[1]).contains(&range) && intensity >= self.threshold;
-            if let Some(Echo { object, .. }) = strongest.filter(|_| is_measured) {
-                found.push(Return { pulse, number: 0, count: 0, range, intensity, object: *object });
+            if let Some(object) = most_of(group).filter(|_| is_measured) {
+                found.push(Return { pulse, number: 0, count: 0, range, intensity, object });
             }
         }
         let count = (found.len() - begin) as u32;
@@ -37,4 +36,16 @@ impl Scanner {
         found.truncate(begin);
         found.extend(kept);
     }
+}
+
+/// The object that sends back most of these echoes' power, all of its own together; of equal ones the nearest.
+fn most_of(group: &[Echo]) -> Option<u32> {
+    let mut sums: Vec<(u32, f64)> = Vec::new();
+    for Echo { object, power, .. } in group {
+        match sums.iter_mut().find(|(known, _)| known == object) {
+            Some((_, sum)) => *sum += power,
+            None => sums.push((*object, *power)),
+        }
+    }
+    sums.into_iter().rev().max_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(object, _)| object)
 }

@@ -2,9 +2,11 @@
 
 use crate::common::{built, diffuse, floor, look, put, quad, shoot};
 use bilux_math::transcendental::{cos, exp, powf, sin_cos};
-use bilux_math::{Rgb, Vec3};
+use bilux_math::{Aabb, Rgb, Vec3};
+use bilux_scene::generators::shapes::cuboid;
 use bilux_scene::{SceneBuilder, Spec};
 use bilux_transport::{RenderSettings, integrators};
+use std::sync::Arc;
 
 /// The single pixel that a narrow camera sees, for a given integrator and depth.
 fn seen(builder: &SceneBuilder, integrator: &Spec, max_depth: u32) -> Rgb {
@@ -276,6 +278,27 @@ fn tinted_shadows_let_coloured_light_through_glass() {
     put(&mut builder, "pane", quad(Vec3::new(-0.9, 1.0, -0.3), Vec3::X * 0.8, Vec3::Z * 0.6), pane);
     assert_eq!(seen(&builder, &whitted(), 1), Rgb::BLACK);
     assert_near(seen(&builder, &whitted().with("shadows", "tinted"), 1), open * tint);
+}
+
+/// Glass takes of the light what Beer's law says of the way through it, in metres: 0.2 m high, of light that comes down by 2 m on 1 m. That of a lamp
+/// and that of the sun, from the same direction, are alike.
+#[test]
+fn tinted_shadows_are_as_deep_as_the_glass_is_thick() {
+    let sigma = Rgb::new(0.5, 2.0, 6.0);
+    let way = 0.2 * 5f32.sqrt() / 2.0;
+    let sun = Spec::new("", "directional").with("direction", Vec3::new(1.0, -2.0, 0.0));
+    for sun in [None, Some(sun.with("classic", Rgb::new(0.4, 0.5, 0.6)))] {
+        let mut builder = shiny_floor();
+        builder.lights.truncate(1);
+        builder.lights[0] = sun.unwrap_or_else(|| builder.lights[0].clone());
+        let open = seen(&builder, &whitted(), 1);
+        assert!(open.max_channel() > 0.05, "{open:?}");
+        let body = Aabb { min: Vec3::new(-0.9, 0.9, -0.3), max: Vec3::new(-0.1, 1.1, 0.3) };
+        let glass = Spec::new("", "dielectric").with("absorption", sigma);
+        put(&mut builder, "body", Arc::new(cuboid(body)), glass);
+        let found = seen(&builder, &whitted().with("shadows", "tinted"), 1);
+        assert_near(found, open * sigma.map(|sigma| exp(-sigma * way)));
+    }
 }
 
 #[test]

@@ -357,6 +357,37 @@ fn silhouettes_are_those_of_each_object_alone() {
     assert_eq!(both[1].visible.bounds.unwrap()[1], 0, "what is visible ends with the picture");
 }
 
+/// Bounds are those of the pixels inside: of what leans to either side, whose ends are not in the first and the last column, with a margin and
+/// without.
+#[test]
+fn bounds_of_silhouettes_hold_all_of_their_pixels() {
+    let mut builder = SceneBuilder::default();
+    for (name, leans) in [("right", 1.5), ("left", -1.5)] {
+        let strip = quad(Vec3::new(-0.2, -1.0, 0.0), Vec3::new(0.3, 0.0, 0.0), Vec3::new(leans, 2.0, 0.0));
+        put(&mut builder, name, strip, diffuse(0.5f32));
+    }
+    look(&mut builder, Vec3::Z * 5.0, Vec3::ZERO, 40.0);
+    let (scene, settings) = (built(&builder), RenderSettings::new(40, 30, 1));
+    let groups = [Some(0), Some(1)];
+    for margin in [0, 7] {
+        let camera = &*scene.cameras()[0].1;
+        let found = silhouettes(&scene, camera, &settings, &groups, 2, margin, &Silent).unwrap().unwrap();
+        for mask in found.iter().flat_map(|one| [&one.whole, &one.visible]) {
+            let rows = 30 + 2 * i64::from(margin);
+            let inside = decoded(&mask.runs, rows as usize);
+            let places = (0..).zip(&inside).filter(|(_, inside)| **inside).map(|(i, _)| [i / rows, i % rows]);
+            let places: Vec<[i64; 2]> = places.collect();
+            let side = |axis: usize| {
+                let along = || places.iter().map(|place| place[axis]);
+                let (first, last) = (along().min().unwrap(), along().max().unwrap());
+                [first - i64::from(margin), last - first + 1]
+            };
+            let ([left, width], [top, height]) = (side(0), side(1));
+            assert_eq!(mask.bounds, Some([left, top, width, height]), "with a margin of {margin}");
+        }
+    }
+}
+
 /// Pixels that runs of columns of this height cover.
 fn decoded(runs: &[u32], height: usize) -> Vec<bool> {
     let pixels: Vec<bool> =

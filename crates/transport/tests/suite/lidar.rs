@@ -204,6 +204,23 @@ fn a_wide_pulse_over_an_edge_returns_twice() {
     assert!(shot(&builder, &deaf, pulse(Vec3::ZERO, Vec3::new(-0.01, 0.0, -1.0))).is_empty());
 }
 
+/// A pulse whose two plates are one return is of the one that sends back most of it together, though each ray of the nearer one is a little
+/// stronger, and comes first.
+#[test]
+fn a_return_of_several_objects_is_that_of_most_of_its_light() {
+    for (share, object) in [(0.1f32, 1), (0.9, 0)] {
+        let mut builder = SceneBuilder::default();
+        // The cone is 0.02 m wide there, and the plate ends beside its middle.
+        let edge = 0.01 * (1.0 - 2.0 * share);
+        let near = quad(Vec3::new(edge, -5.0, -10.0), Vec3::X * 5.0, Vec3::Y * 10.0);
+        put(&mut builder, "near", near, diffuse(0.5f32));
+        put(&mut builder, "far", plate(Vec3::new(0.0, 0.0, -10.1), Vec3::Z, 5.0), diffuse(0.5f32));
+        let wide = Scanner { divergence: 2e-3, rays: 200, ..scanner() };
+        let found = shot(&builder, &wide, pulse(Vec3::ZERO, -Vec3::Z));
+        assert!(found.len() == 1 && found[0].object == object, "{share}: {found:?}");
+    }
+}
+
 #[test]
 fn each_pulse_meets_things_where_they_are_at_its_time() {
     let mut builder = SceneBuilder::default();

@@ -1,7 +1,7 @@
 //! A picture is a function of scene, settings and seed: threads, crops, parts and cancellation make no difference.
 
 use crate::common::{built, diffuse, floor, integrator, put, shoot, still_life};
-use bilux_math::{Rgb, Vec3};
+use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{AccelChoice, Ray, Scene, SceneBuilder, Spec};
 use bilux_transport::{
@@ -115,6 +115,51 @@ fn cook_without_extents_is_whitted_to_the_bit() {
         let spec = extents.iter().filter(|e| **e != on).fold(Spec::new("", "cook"), |s, e| s.with(e, 0.0f32));
         let film = shoot(&scene, &*integrators::build(&spec).unwrap(), &settings).film;
         assert_ne!(film, whitted, "{on}");
+    }
+}
+
+/// Greatest distances of the rays of a pixel's samples from its middle, from that of the lens and from that of the shutter's time: each as a part of what
+/// filter, aperture and shutter allow.
+fn spread_of(spec: &Spec) -> [f32; 3] {
+    let mut builder = SceneBuilder::default();
+    let eye =
+        Spec::new("", "perspective").with("position", Vec3::new(0.0, 1.0, 5.0)).with("look_at", Vec3::Y);
+    let eye = eye.with("aperture", 0.2f32).with("focus", 4.0f32);
+    builder.cameras = vec![CameraSpec { spec: eye, keyframes: Vec::new() }];
+    let scene = builder.build(&AccelChoice::default(), [2.0, 5.0], 1.0).unwrap();
+    let (camera, integrator) = (&*scene.cameras()[0].1, integrators::build(spec).unwrap());
+    let settings = RenderSettings::new(16, 16, 256);
+    let mut most = [0.0f32; 3];
+    for sample in 0..256 {
+        let place = SamplePlace { x: 3, y: 9, sample };
+        let ray = replay(&scene, camera, &*integrator, &settings, place).unwrap().ray;
+        let (origin, direction) = (Vec3::from(ray.origin), Vec3::from(ray.direction));
+        // Where it is in focus, the place on the lens does not count.
+        let film = camera.project(origin + direction * (-4.0 / direction.z), ray.time).unwrap() * 16.0;
+        let beside = (film - Vec2::new(3.5, 9.5)).abs().max_element() / 0.5;
+        let aside = origin.distance(Vec3::new(0.0, 1.0, 5.0)) / 0.2;
+        let late = (ray.time - 3.5).abs() / 1.5;
+        most = [most[0].max(beside), most[1].max(aside), most[2].max(late)];
+    }
+    most
+}
+
+/// Each fraction of `cook` is that of its own extent, and the factor on all of them is one on each.
+#[test]
+fn rays_of_cook_spread_over_the_fraction_that_is_asked_for() {
+    let names = ["pixel", "lens", "shutter"];
+    let mut cases = vec![(Spec::new("", "cook").with("extent", 0.25f32), [0.25; 3])];
+    for (i, name) in names.into_iter().enumerate() {
+        let mut wanted = [1.0; 3];
+        wanted[i] = 0.4;
+        cases.push((Spec::new("", "cook").with(name, 0.4f32), wanted));
+    }
+    for (spec, wanted) in cases {
+        let found = spread_of(&spec);
+        for ((found, wanted), name) in found.into_iter().zip(wanted).zip(names) {
+            let part = found / wanted;
+            assert!((0.95..1.001).contains(&part), "{:?}: {name}: {found}, not {wanted}", spec.parameters);
+        }
     }
 }
 

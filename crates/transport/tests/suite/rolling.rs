@@ -1,10 +1,11 @@
 //! Rolling shutters: rows that are exposed one after the other.
 
+use crate::common::labelled::Labelled;
 use crate::common::statistics::{UNLIKELY, agreement, difference};
 use crate::common::{along, diffuse, effort, integrator, moving, put, quad, shoot};
 use bilux_math::Vec3;
 use bilux_scene::cameras::CameraSpec;
-use bilux_scene::{AccelChoice, Scene, SceneBuilder, Spec};
+use bilux_scene::{AccelChoice, Parameters, Scene, SceneBuilder, Spec};
 use bilux_testing::verdicts::{Picture, Side};
 use bilux_transport::RenderSettings;
 
@@ -63,5 +64,46 @@ fn both_ends_see_rows_when_they_are_exposed() {
         // And it matters: what is exposed all at once looks different.
         let p = difference(&path, &quarters(&scene, "path", 900, 0.0));
         assert!(p < UNLIKELY, "{readout} s: p = {p}");
+    }
+}
+
+/// The camera comes nearer by 1 m in a second, and turns: z-depths and normals are those of where it is when a row is exposed.
+#[test]
+fn labels_in_the_camera_s_space_are_of_the_moment_of_their_row() {
+    let mut builder = SceneBuilder::default();
+    put(
+        &mut builder,
+        "wall",
+        quad(Vec3::new(-50.0, -50.0, 0.0), Vec3::X * 100.0, Vec3::Y * 100.0),
+        diffuse(0.5f32),
+    );
+    let camera = |z: f32, x: f32| [("position", Vec3::Z * z), ("look_at", Vec3::new(x, 0.0, z - 1.0))];
+    let mut later = Parameters::default();
+    camera(9.0, 1.0).into_iter().for_each(|(key, place)| later.set(key, place));
+    let spec = camera(10.0, 0.0)
+        .into_iter()
+        .fold(Spec::new("", "perspective"), |spec, (key, place)| spec.with(key, place));
+    builder.cameras = vec![CameraSpec { spec, keyframes: vec![(0.0, Parameters::default()), (1.0, later)] }];
+    let settings = RenderSettings { readout: 1.0, ..RenderSettings::new(5, 11, 1) };
+    let labels = Labelled::of(&open(&builder, 1.0), &settings);
+    for row in 0..11 {
+        let time = row as f32 / 10.0;
+        // It looks to the right by as much as it has moved ahead.
+        let forward = Vec3::new(time, 0.0, -1.0).normalize();
+        for i in row * 5..row * 5 + 5 {
+            let z_depth = (labels.position[i] - Vec3::Z * (10.0 - time)).dot(forward);
+            assert!(
+                (labels.z_depth[i] - z_depth).abs() < 1e-4,
+                "row {row}: {}, not {z_depth}",
+                labels.z_depth[i]
+            );
+            assert!(labels.z_depth[i] <= labels.depth[i] * (1.0 + 1e-6), "row {row}");
+            let towards = Vec3::new(forward.x, 0.0, -forward.z);
+            assert!(
+                labels.camera_normal[i].distance(towards) < 1e-5,
+                "row {row}: {}",
+                labels.camera_normal[i]
+            );
+        }
     }
 }

@@ -4,6 +4,7 @@ use crate::common::labelled::Labelled;
 use crate::common::{built, diffuse, integrator, look, put, quad};
 use bilux_math::transcendental::exp_f64;
 use bilux_math::{Aabb, Rgb, Transform, Vec3};
+use bilux_pictures::Picture;
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::media::Grid;
 use bilux_scene::mesh::shapes::cuboid;
@@ -201,5 +202,26 @@ fn smoke_over_a_ground_hides_it_and_shades_it() {
     for (alpha, model) in alpha.iter().zip(&model) {
         assert!((f64::from(*model) - (1.0 - passed)).abs() < 1e-3, "{model}");
         assert!((f64::from(*alpha) - (1.0 - passed * passed)).abs() < 1e-3, "{alpha}");
+    }
+}
+
+/// The haze that guides denoisers is a fraction of what is there: of a cut-out all of it where there is nothing but fog, and otherwise the part of the
+/// light that the fog scatters, 1 - exp(-σ d) of 0.4 per metre over two.
+#[test]
+fn haze_of_a_cut_out_is_that_of_what_is_there() {
+    let mut builder = slab(Spec::new("", "interface").with("scattering", 0.4f32));
+    builder.objects.truncate(1);
+    let settings = RenderSettings::new(SIDE, SIDE, 8);
+    let scene = built(&builder);
+    let found = seen(&scene, &settings);
+    let stopped = (1.0 - exp_f64(-0.8)) as f32;
+    for (is_cut_out, wanted) in [(false, stopped), (true, 1.0)] {
+        let mut picture = Picture::from_rgb(SIDE as usize, SIDE as usize, found.albedo.clone()).unwrap();
+        if is_cut_out {
+            picture.push_channel("A", found.coverage.clone()).unwrap();
+        }
+        found.push_guides(&mut picture).unwrap();
+        let haze = picture.channel("guides.haze").unwrap();
+        assert!(haze.iter().all(|haze| (haze - wanted).abs() < 1e-4), "{is_cut_out}: {haze:?}");
     }
 }

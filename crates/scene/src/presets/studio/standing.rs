@@ -3,6 +3,7 @@
 use super::super::{affine, move_all};
 use super::Studio;
 use crate::builder::SceneBuilder;
+use crate::lights::surrounds;
 use crate::materials::scale_lengths;
 use crate::orientation::{Orientation, UpHint};
 use crate::parameters::Spec;
@@ -56,5 +57,5 @@ pub fn set_upright(scene: &mut SceneBuilder, studio: &Studio) -> Option<Orientat
 
 /// True for a light that comes from all around, and for a backdrop.
 pub(super) fn is_around(light: &Spec) -> bool {
-    matches!(light.kind.as_str(), "environment" | "sky" | "ambient")
+    surrounds(&light.kind) || light.kind == "ambient"
 }
