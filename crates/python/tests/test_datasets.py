@@ -254,6 +254,23 @@ def test_lines_of_kitti_hold_boxes_in_space(tmp_path):
         labels.kitti(tmp_path / "a.txt", seen, scene.cameras[0], SIZE, forward=(0, 1, 0))
 
 
+def test_boxes_of_kitti_are_as_large_as_scaled_objects(tmp_path):
+    """Height along y of the mesh, length along its front, and the width across, each scaled on its own, before it is turned."""
+    corners = np.array([[x, y, z] for x in (-0.4, 0.4) for y in (0, 0.5) for z in (-1, 1)], float)
+    sine, cosine = np.sin(0.6), np.cos(0.6)
+    place = np.eye(4)
+    place[:3, :3] = np.array([[cosine, 0, sine], [0, 1, 0], [-sine, 0, cosine]]) @ np.diag([0.5, 4, 1.5])
+    scene = bilux.Scene()
+    faces = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]
+    scene.add_mesh(corners, faces, transform=place, category="Car")
+    scene.add_camera(bilux.cameras.opencv(K, eye((0, 0.4, 7), (0, 0.4, 0)), size=SIZE))
+    seen = labels.instances(scene, size=SIZE)
+    for forward, sides in (((0, 0, 1), [2.0, 0.4, 3.0]), ((-1, 0, 0), [2.0, 3.0, 0.4])):
+        labels.kitti(tmp_path / "a.txt", seen, scene.cameras[0], SIZE, forward=forward)
+        found = [float(word) for word in (tmp_path / "a.txt").read_text().split()[8:11]]
+        assert found == pytest.approx(sides, abs=1e-4), forward
+
+
 def rigid():
     """The scene with objects that are turned and moved, not scaled."""
     scene = scene_of()

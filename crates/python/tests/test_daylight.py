@@ -299,6 +299,26 @@ def test_the_sky_gives_the_light_of_the_weather(tmp_path):
     assert np.all(np.abs(by_patches - values) < 0.03 * values + 5 * errors), (by_patches, values)
 
 
+def test_skies_of_every_clearness_are_those_of_gendaylit(folder):
+    """Each range of [Perez 1990, table 4], from overcast to clear, as scenes of Radiance have them: by other code and another table."""
+    used = set()
+    for direct, diffuse in ((4, 100), (26, 150), (24, 60), (89, 110), (180, 120), (405, 140), (696, 140), (890, 110)):
+        line = f"!gendaylit 6 21 10 -a 40 -o 0 -m 0 -d 9 -W {direct} {diffuse}\n"
+        (folder / "sky.rad").write_text(line + "skyfunc glow sky_glow 0 0 4 1 1 1 0\nsky_glow source sky 0 0 4 0 0 1 180\n")
+        (light,) = bilux.load("sky.rad").lights
+        theirs = light.parameters
+        one = {name: np.array([value], float) for name, value in (
+            ("direct_normal", direct), ("diffuse_horizontal", diffuse), ("dew_point", 9), ("hour", 9.5),
+            ("elevation", theirs["elevation"]), ("azimuth", theirs["azimuth"]),
+        )}  # fmt: skip
+        weather = daylight.Weather("", 40.0, 0.0, 0.0, np.array([6]), np.array([21]), **one)
+        ours = [float(values[0]) for values in daylight._illuminances(weather)]
+        light_of = [683 * theirs[name][0] for name in ("direct", "diffuse")]
+        assert ours == pytest.approx([*light_of, theirs["clearness"], theirs["brightness"]], rel=1e-5), (direct, diffuse)
+        used.add(int(np.searchsorted([1.065, 1.23, 1.5, 1.95, 2.8, 4.5, 6.2], ours[2], side="right")))
+    assert used == set(range(8))
+
+
 def test_missing_dew_points_are_those_of_usual_air(tmp_path):
     """99.9 stands for missing, in files of EnergyPlus."""
     lines = list(RECORDS)

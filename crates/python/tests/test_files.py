@@ -130,6 +130,21 @@ def test_what_is_odd_about_a_picture_is_a_warning(tmp_path):
         bilux.read_picture(cut.read_bytes())
 
 
+@pytest.mark.parametrize("name", ["a.exr", "a.png"])
+def test_textures_of_files_keep_their_alpha(tmp_path, name):
+    """What is cut out of a picture is cut out of the one that a scene is written with."""
+    alpha = np.array([[1, 0.25, 0], [0.5, 0.75, 1]])
+    pixels = np.dstack([np.full((2, 3, 3), 0.5), alpha])
+    bilux.Picture(pixels).save(tmp_path / name)
+    material = bilux.materials.principled(base_color=bilux.Texture.read(tmp_path / name))
+    scene = bilux.Scene()
+    scene.add_mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], uvs=[[0, 0], [1, 0], [0, 1]], material=material)
+    (tmp_path / "written").mkdir()
+    scene.save(tmp_path / "written/card.usda")
+    (picture,) = (tmp_path / "written").glob("*.png")
+    np.testing.assert_allclose(bilux.read_picture(picture).pixels[..., 3], alpha, atol=0.5 / 255)
+
+
 def test_textures_from_open_files_and_as_pickles(tmp_path):
     texels = np.arange(4 * 5 * 4, dtype=np.uint8).reshape(4, 5, 4)
     light = np.linspace(0, 9, 4 * 5 * 3).reshape(4, 5, 3)

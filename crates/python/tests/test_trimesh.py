@@ -159,3 +159,32 @@ def test_scenes_are_taken_over_with_their_textures():
     assert at(3, 0).argmax() == 1 and at(-3, 1)[2] < 0.1 < at(-3, 1)[1]
     with pytest.raises(TypeError, match="neither a trimesh.Scene nor"):
         bilux.trimesh.scene_of([1, 2])
+
+
+def test_factors_of_metal_and_roughness_count_with_and_without_a_picture():
+    """glTF 2.0, 3.9.2: roughness is in the green and metal in the blue of the picture, each times its factor."""
+    image = pytest.importorskip("PIL.Image")
+    picture = image.fromarray(np.full((2, 2, 3), (255, 51, 204), np.uint8))
+    card = [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]
+    for given, wanted in (
+        ({"metallicFactor": 0.25, "roughnessFactor": 0.5}, (0.5 * 0.2, 0.25 * 0.8)),
+        ({"metallicFactor": 0.75}, (0.2, 0.75 * 0.8)),
+        ({"roughnessFactor": 0.25}, (0.25 * 0.2, 0.8)),
+    ):
+        for textured in (True, False):
+            known = given | ({"metallicRoughnessTexture": picture} if textured else {})
+            material = trimesh.visual.material.PBRMaterial(**known)
+            visual = trimesh.visual.TextureVisuals(uv=[[0, 0], [1, 0], [1, 1], [0, 1]], material=material)
+            mesh = trimesh.Trimesh(card, [[0, 1, 2], [0, 2, 3]], visual=visual, process=False)
+            found = bilux.trimesh.scene_of(mesh).materials[0].parameters
+            if not textured:
+                assert found.get("specular_roughness") == given.get("roughnessFactor")
+                assert found.get("base_metalness") == given.get("metallicFactor")
+                continue
+            for name, value in zip(("specular_roughness", "base_metalness"), wanted, strict=True):
+                lit = bilux.Scene()
+                glow = bilux.materials.principled(base_color=0.0, emission=found[name])
+                lit.add_mesh(card, [[0, 1, 2], [0, 2, 3]], uvs=[[0, 0], [1, 0], [1, 1], [0, 1]], material=glow)
+                lit.add_camera(bilux.cameras.orthographic(position=(0, 0, 9), look_at=(0, 0, 0), height=1))
+                shown = lit.render(size=4, spp=1, integrator="path", max_depth=0).pixels[..., :3]
+                assert np.allclose(shown, value, atol=1e-3), (name, given, shown[0, 0])

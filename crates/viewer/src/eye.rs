@@ -218,6 +218,9 @@ mod tests {
             asked.set("time", time);
             let home = Eye::at_home(&job, &scene, &asked).unwrap();
             assert!(home.position.distance(DVec3::new(x, 1.0, 5.0)) < 1e-6, "{time}: {home:?}");
+            // And it looks where it looks then.
+            let ahead = (home.pivot - home.position).normalize();
+            assert!(ahead.distance(DVec3::new(-x, 0.0, -5.0).normalize()) < 1e-6, "{time}: {home:?}");
         }
     }
 

@@ -313,4 +313,21 @@ mod tests {
         scene.objects.pop();
         assert!(explained(&scene).measures.onto_glass.iter().all(|(name, _)| name != "bulb"));
     }
+
+    /// One of too many columns and one of too many rows; one that is just small enough is none.
+    #[test]
+    fn textures_are_huge_by_either_side() {
+        let mut scene = generated("cornell");
+        scene.settings.set("integrator", "path");
+        for (name, width, height) in [("square", 4096, 2), ("wide", 4097, 2), ("high", 3, 4097)] {
+            let texels = vec![bilux_math::Rgb::WHITE; width * height];
+            scene.textures.push(bilux_scene::Texture::new(name, width, height, texels, false).into());
+        }
+        let Explanation { measures, findings, .. } = explained(&scene);
+        let wanted = [("wide".to_owned(), 4097, 2), ("high".to_owned(), 3, 4097)];
+        assert_eq!(measures.huge_textures, wanted);
+        let said =
+            |finding: &Finding| finding.what.starts_with("huge textures (2): 'wide' has 4097 x 2 texels");
+        assert!(findings.iter().any(said), "{findings:?}");
+    }
 }

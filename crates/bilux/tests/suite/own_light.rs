@@ -540,3 +540,20 @@ fn no_picture_of_a_turntable_is_burnt_by_the_brighter_side() {
     assert!((begun_bright - wanted).abs() < 1.5, "{begun_bright}");
     assert!((begun_dim - begun_bright).abs() < 0.5, "{begun_dim} and {begun_bright}");
 }
+
+/// A sign that glows on both sides, on one of them 64 times as brightly: the exposure of all pictures is that of the brighter side,
+/// wherever the turntable begins.
+#[test]
+fn no_picture_of_a_glowing_sign_is_burnt_by_its_brighter_side() {
+    let exposure = |front: f32, back: f32| {
+        let mut scene = file();
+        for (z, glow) in [(0.05, front), (-0.05, back)] {
+            put(&mut scene, panel(Vec3::new(0.0, 1.0, z), Vec3::X * z.signum(), Vec3::Y), glowing(glow));
+        }
+        let series = Series::turntable(&scene, &asked(), 2).unwrap();
+        let job = Job::new(&scene, asked().in_series(series.turned(0, 2))).unwrap();
+        job.write_options().unwrap().exposure
+    };
+    // An emitter that a display shows well has a radiance of 1.
+    assert_eq!([exposure(64.0, 4096.0), exposure(4096.0, 64.0)], [-12.0; 2]);
+}

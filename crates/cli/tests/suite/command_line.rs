@@ -352,6 +352,37 @@ fn copies_stand_at_their_offsets_and_conversion_loses_nothing() {
     assert!(read("again.obj") == read("three.obj"));
 }
 
+/// Each mesh has what the others lack.
+#[test]
+fn info_says_of_each_mesh_what_it_has() {
+    let folder = TempDir::new().unwrap();
+    let ply = |names: &str, values: &str, faces: usize| {
+        let properties: String = names.split(' ').map(|name| format!("property float {name}\n")).collect();
+        format!(
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n{properties}\
+             element face {faces}\nproperty list uchar int vertex_indices\nend_header\n0 0 0 {values}\n1 0 0 {values}\n0 1 0 {values}\n{}",
+            "3 0 1 2\n".repeat(faces)
+        )
+    };
+    for (name, text, wanted) in [
+        ("a.ply", ply("nx ny nz", "0 0 1", 1), "1 0 0 true false false"),
+        ("b.ply", ply("s t", "0.25 0.5", 2), "2 0 0 false true false"),
+        ("c.ply", ply("red green blue", "0.1 0.2 0.3", 3), "3 0 0 false false true"),
+        (
+            "d.obj",
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\np 1\nl 1 2 3 4\n".to_owned(),
+            "0 1 3 false false false",
+        ),
+    ] {
+        std::fs::write(folder.path().join(name), text).unwrap();
+        let info = bilux(folder.path()).args(["info", name, "--json"]).assert().success();
+        let json: serde_json::Value = serde_json::from_slice(&info.get_output().stdout).unwrap();
+        let keys = ["triangles", "points", "lines", "normals", "uvs", "vertex_colours"];
+        let found = keys.map(|key| json["objects"][0][key].to_string()).join(" ");
+        assert_eq!(found, wanted, "{name}: {}", json["objects"]);
+    }
+}
+
 #[test]
 fn read_only_picture_formats_convert_to_png() {
     let folder = TempDir::new().unwrap();

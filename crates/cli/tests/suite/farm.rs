@@ -26,6 +26,14 @@ fn run_array(job: &Path) -> usize {
     last + 1
 }
 
+/// What a scheduler is told of the progress of a command, in percent, as OpenJD's specification has it.
+fn told(folder: &Path, words: &[&str]) -> Vec<f64> {
+    let mut task = Command::cargo_bin("bilux").unwrap();
+    let done = task.current_dir(folder).args(words).assert().success();
+    let said = String::from_utf8_lossy(&done.get_output().stderr).into_owned();
+    said.lines().filter_map(|line| line.strip_prefix("openjd_progress: ")?.parse().ok()).collect()
+}
+
 /// Runs the last line of the README's recipe for GNU parallel: the merge.
 fn merge(job: &Path) {
     let readme = std::fs::read_to_string(job.join("README.md")).unwrap();
@@ -71,8 +79,8 @@ fn tasks_write_the_frames_of_one_render() {
     let options = ["--spp", "2", "--size", "32x24", "--set", "fps=2"];
     let farm = ["farm", "move.toml", "--frames", "1-5", "--chunks", "2", "-o", "job", "--"];
     bilux(path).args(farm).args(options).assert().success();
-    let render = ["render", "move.toml", "--frames", "1-5", "-o", "{stem}-{frame}.png"];
-    bilux(path).args(render).args(options).assert().success();
+    let render = ["--progress=openjd", "render", "move.toml", "--frames", "1-5", "-o", "{stem}-{frame}.png"];
+    assert_eq!(told(path, &[&render[..], &options].concat()), [20.0, 40.0, 60.0, 80.0, 100.0]);
     assert_eq!(run_array(&path.join("job")), 2);
     let frame =
         |folder: &Path, frame: u32| std::fs::read(folder.join(format!("move-{frame:04}.png"))).unwrap();
@@ -103,24 +111,10 @@ fn tasks_write_the_pictures_of_one_turn() {
         );
     }
     assert!(picture(path, 0) != picture(path, 2), "nothing turns");
-    // A scheduler is told how far a task of several pictures is, as OpenJD's specification has it.
-    let mut task = Command::cargo_bin("bilux").unwrap();
-    let words = [
-        "--progress=openjd",
-        "render",
-        "pot.toml",
-        "--turntable",
-        "5",
-        "--frames",
-        "1-4",
-        "-o",
-        "a-{frame}.png",
-    ];
-    let done = task.current_dir(path).args(words).args(options).assert().success();
-    let said = String::from_utf8_lossy(&done.get_output().stderr).into_owned();
-    let told: Vec<f64> =
-        said.lines().filter_map(|line| line.strip_prefix("openjd_progress: ")?.parse().ok()).collect();
-    assert_eq!(told, [25.0, 50.0, 75.0, 100.0], "{said}");
+    // A scheduler is told how far a task of several pictures is.
+    let render = ["--progress=openjd", "render", "pot.toml", "--turntable", "5", "--frames", "1-4"];
+    let words = [&render[..], &["-o", "a-{frame}.png"], &options].concat();
+    assert_eq!(told(path, &words), [25.0, 50.0, 75.0, 100.0]);
     assert!(!path.join("a-0000.png").exists() && path.join("a-0004.png").exists());
     let wrong = ["render", "pot.toml", "--turntable", "5", "--frames", "1-5", "-o", "a-{frame}.png"];
     bilux(path).args(wrong).assert().code(2);

@@ -1,6 +1,6 @@
 //! Layers for compositors, what pictures say about themselves, folders that are compared, and scenes that are explained.
 
-use bilux::pictures::{Picture, read};
+use bilux::pictures::{Picture, WriteOptions, read};
 use bilux::transport::aovs::Aov;
 use std::fs;
 use std::path::Path;
@@ -319,6 +319,27 @@ fn heat_maps_have_photometric_units_and_a_scale() {
         let output = run(path, &format!("convert {options}"));
         let error = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(output.status.code() == Some(2) && error.contains(said), "{options}: {error}");
+    }
+}
+
+/// In cd/m², 683 times the luminance of the channels' light and of its errors, which add up; the mean has those of all pixels.
+#[test]
+fn values_of_a_plan_have_the_errors_of_their_own_pixels() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path();
+    let light = [[2.0, 1.0, 4.0], [0.3; 3], [1.0; 3]];
+    let errors = [[0.2, 0.1, 0.4], [0.01; 3], [0.03; 3]];
+    let mut plan = Picture::from_rgb(3, 1, light.map(bilux::math::Rgb::from_array).to_vec()).unwrap();
+    for (channel, name) in ["R", "G", "B"].iter().enumerate() {
+        let variances = errors.map(|error: [f32; 3]| error[channel] * error[channel]).to_vec();
+        plan.push_channel(format!("variance.{name}"), variances).unwrap();
+    }
+    bilux::pictures::write(path.join("plan.exr"), &plan, &WriteOptions::default()).unwrap();
+    let said = run(path, "convert plan.exr -o plan.csv --heat-map luminance --unit cd/m2");
+    let said = String::from_utf8_lossy(&said.stderr).into_owned();
+    // 683 (0.2126 · 2 + 0.7152 · 1 + 0.0722 · 4) = 976.1, and a tenth of that.
+    for wanted in ["Lm 621 ± 33 cd/m2", "Lmin 205 ± 6.8 cd/m2", "Lmax 976 ± 98 cd/m2"] {
+        assert!(said.contains(wanted), "{wanted}: {said}");
     }
 }
 

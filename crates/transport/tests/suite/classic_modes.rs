@@ -3,7 +3,7 @@
 use crate::common::{built, diffuse, floor, look, put, quad, shoot};
 use bilux_math::transcendental::{cos, exp, powf, sin_cos};
 use bilux_math::{Aabb, Rgb, Vec3};
-use bilux_scene::generators::shapes::cuboid;
+use bilux_scene::mesh::shapes::cuboid;
 use bilux_scene::{SceneBuilder, Spec};
 use bilux_transport::{RenderSettings, integrators};
 use std::sync::Arc;

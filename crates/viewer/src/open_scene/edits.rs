@@ -197,6 +197,33 @@ mod tests {
         assert_eq!(radiances(&now)[1], Value::Number(7.0));
     }
 
+    /// What is said of a camera is not its way, whether it is said, taken back or said again.
+    #[test]
+    fn a_camera_that_moves_goes_on_to_move_when_it_is_edited() {
+        let mut scene = session().scene().clone();
+        let ways = [1.0f32, -2.0].map(|x| {
+            let mut at = Parameters::default();
+            at.set("position", bilux::math::Vec3::new(x, 1.0, 4.0));
+            vec![(0.5, at.clone()), (2.0, at)]
+        });
+        let spec = scene.cameras[0].spec.clone();
+        scene.cameras = ways.clone().map(|keyframes| CameraSpec { spec: spec.clone(), keyframes }).into();
+        let mut settings = Parameters::default();
+        settings.set("size", "8x8");
+        let (mut session, mut edits) = (Session::new(scene, &settings).unwrap(), Edits::default());
+        edits.change(&mut session, Part::Camera, 1, "fov", Value::Number(30.0)).unwrap();
+        let is_as_it_was = |session: &Session, fov: Option<f32>| {
+            let cameras = &session.scene().cameras;
+            let moves = cameras.iter().zip(&ways).all(|(camera, way)| camera.keyframes == *way);
+            moves && cameras.len() == 2 && fov.is_none_or(|fov| cameras[1].spec.number("fov") == Some(fov))
+        };
+        assert!(is_as_it_was(&session, Some(30.0)), "{:?}", session.scene().cameras);
+        edits.undo(&mut session).unwrap();
+        assert!(is_as_it_was(&session, None) && session.scene().cameras[1].spec == spec);
+        edits.redo(&mut session).unwrap();
+        assert!(is_as_it_was(&session, Some(30.0)), "{:?}", session.scene().cameras);
+    }
+
     /// A slider makes one step of many changes. Another light, another part and another parameter are other steps.
     #[test]
     fn only_changes_of_the_same_parameter_of_the_same_part_are_one_step() {

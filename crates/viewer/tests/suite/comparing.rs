@@ -59,6 +59,11 @@ fn the_scene_before_the_edits_is_shown_beside_it_and_follows_the_camera() {
         client.send(json!({ "do": "compare", "with": "unedited" })).await;
         let other = client.frame(|frame| is_other(frame) && frame.rests()).await;
         assert!(other.bytes == first.bytes && edited.bytes != first.bytes);
+        for show in [true, false] {
+            client.send(json!({ "do": "differences", "show": show })).await;
+            let state = client.text("state", |state| state["comparison"]["differences"] == show).await;
+            assert_eq!(state["comparison"], json!({ "with": "unedited", "differences": show }));
+        }
         client.send(json!({ "do": "orbit", "by": [20, 0] })).await;
         let moved = client
             .frame(|frame| is_other(frame) && frame.rests() && frame.header["eye"] != other.header["eye"])

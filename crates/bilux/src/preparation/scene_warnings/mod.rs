@@ -23,7 +23,7 @@ pub(crate) fn oddities(given: &SceneBuilder, scene: &Scene, camera: &dyn Camera)
              this is intended",
         );
     } else if sees_only_back_faces(given.objects.len() as u32, scene, camera) {
-        let [azimuth, elevation] = from_behind(camera);
+        let [azimuth, elevation] = from_behind(camera, scene.shutter()[0]);
         warn(&format!(
             "the camera sees only the back faces of single-sided surfaces (doubleSided is false in glTF), so it sees \
              nothing: look from the other side, for example with --orbit {azimuth},{elevation}",
@@ -157,8 +157,8 @@ fn sees_only_back_faces(objects: u32, scene: &Scene, camera: &dyn Camera) -> boo
 
 /// The orbit of the studio's camera that looks from the opposite side, in tenths of a degree: what shows its back to one shows
 /// its front to the other.
-fn from_behind(camera: &dyn Camera) -> [f32; 2] {
-    let middle = CameraSample { film: Vec2::splat(0.5), lens: Vec2::splat(0.5), time: 0.0 };
+fn from_behind(camera: &dyn Camera, time: f32) -> [f32; 2] {
+    let middle = CameraSample { film: Vec2::splat(0.5), lens: Vec2::splat(0.5), time };
     let towards = -Vec3::from(camera.ray(&middle).direction).normalize();
     let azimuth = atan2(towards.x, towards.z).to_degrees() + 180.0;
     let elevation = -asin(towards.y.clamp(-1.0, 1.0)).to_degrees();
@@ -302,6 +302,25 @@ mod tests {
             let advice = advice.split(|c: char| !"0123456789.,-".contains(c)).next().unwrap();
             assert_eq!(warnings(advice), "", "--orbit {advice}");
         }
+    }
+
+    /// The side of a card that faces +x is seen from there, wherever a moving camera that sees its back was at first.
+    #[test]
+    fn the_other_side_of_a_moving_camera_is_that_of_the_moment() {
+        let mut scene = SceneBuilder::default();
+        let card = scene.add_material(Spec::new("card", "diffuse").with("visible_sides", "front"));
+        let corners = [Vec3::ZERO, Vec3::Y, Vec3::Z].map(|corner| 2.0 * corner - Vec3::new(0.0, 0.6, 0.6));
+        let mesh = Mesh { positions: corners.to_vec(), triangles: vec![[0, 1, 2]], ..Mesh::default() };
+        scene.objects.push(Object::new("card", Arc::new(mesh), card));
+        let at = |x: f32, z: f32| Spec::new("", "perspective").with("position", Vec3::new(x, 0.0, z));
+        let keyframes = [(0.0, at(-1.0, 6.0)), (2.0, at(-6.0, 0.0))].map(|(time, at)| (time, at.parameters));
+        let spec = at(-1.0, 6.0).with("look_at", Vec3::ZERO);
+        scene.cameras.push(CameraSpec { spec, keyframes: keyframes.into() });
+        let mut user = Parameters::default();
+        user.set("time", 2.0f32);
+        let job = Job::new(&scene, &user).unwrap();
+        let said = job.warnings().iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
+        assert!(said.ends_with("for example with --orbit 90,0"), "{said}");
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Which pictures of an animation or a turntable are finished, so that `--resume` does not render them again.
 
 use super::input::Input;
-use super::targets::{Target, frame_path, is_stdout};
+use super::targets::{Target, is_stdout, named_by};
 use crate::arguments::choices::{GlassArgument, defined};
 use crate::arguments::lasting::Checkpoints;
 use crate::arguments::studio::StudioArguments;
@@ -114,14 +114,7 @@ impl<'a> FinishedFrames<'a> {
 
 /// The name of the file: that of the frames, with `frames` in place of their number.
 fn journal_path(pattern: &Path) -> PathBuf {
-    let name = frame_path(pattern, 0).to_string_lossy().into_owned();
-    let text = pattern.to_string_lossy();
-    let name = if text.contains("{frame}") {
-        text.replace("{frame}", "frames")
-    } else {
-        name.replace("-0000.", "-frames.")
-    };
-    checkpoint_path(Path::new(&name))
+    checkpoint_path(&named_by(pattern, "frames"))
 }
 
 fn identity(input: &Input, user: &Parameters) -> anyhow::Result<Identity> {
@@ -157,6 +150,7 @@ fn identity(input: &Input, user: &Parameters) -> anyhow::Result<Identity> {
         ("--fast", a.fast.to_string()),
         ("--samples", said(a.samples.map(|(first, end)| format!("{first}..{end}")))),
         ("--crop", said(a.crop.map(|crop| crop.map(|side| side.to_string()).join(",")))),
+        ("--lengths", said(a.lengths.map(|bins| format!("{},{},{}", bins.begin, bins.width, bins.count)))),
         ("--aov", a.aov.join(",")),
         ("--labels", a.labels.to_string()),
         ("--bits", a.bits.clone()),
@@ -206,11 +200,60 @@ fn read(path: &Path) -> anyhow::Result<(Identity, BTreeSet<u32>)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arguments::{Arguments, Command, settings_from};
+    use crate::process::interrupt::interrupt;
+    use clap::{CommandFactory, Parser};
 
     #[test]
     fn the_file_lies_next_to_the_frames() {
         let name = |pattern: &str| journal_path(Path::new(pattern)).to_string_lossy().into_owned();
         assert_eq!(name("a/walk-{frame}.png"), "a/walk-frames.png.checkpoint");
         assert_eq!(name("walk.exr"), "walk-frames.exr.checkpoint");
+        // Whatever else has such a name is not one of theirs.
+        assert_eq!(name("take-0000.d/walk-0000.b.exr"), "take-0000.d/walk-0000.b-frames.exr.checkpoint");
+    }
+
+    /// Options that change no picture, or say only which pictures are wanted and where they go.
+    const OF_NO_PICTURE: &str = "accel bsp-group bsp-split build checkpoint frames input-format json output output-format \
+                                 preview replay resume stats threads timeout watch";
+
+    /// Words that one option or another takes.
+    const VALUES: [&str; 11] =
+        ["", "7", "0.5", "x", "9x6", "1,2,3", "1,2,3,4", "0-1", "1..2", "loop", "material:0:kd=0.5"];
+
+    /// Frames that were made without an option are not those with it, but for what changes no picture.
+    #[test]
+    fn every_option_that_changes_frames_is_in_their_identity() {
+        let folder = tempfile::tempdir().unwrap();
+        let scene = folder.path().join("card.obj");
+        std::fs::write(&scene, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+        let with = |option: &str| {
+            let line = ["bilux", "render", scene.to_str()?, "--output=a.png", option];
+            let Arguments { command, common, .. } = Arguments::try_parse_from(line).ok()?;
+            let Command::Render(arguments) = command else { return None };
+            let user = settings_from::render(&arguments).ok()?;
+            let input = Input::open(&scene, &arguments, &common, interrupt(), None).ok()?;
+            identity(&input, &user).ok()
+        };
+        let without = with("--strict").unwrap();
+        let command = Arguments::command();
+        let options = command.find_subcommand("render").unwrap().get_arguments();
+        let mut wrong = Vec::new();
+        for (option, name) in options.filter_map(|option| Some((option, option.get_long()?))) {
+            let known = option.get_possible_values();
+            let usual = |value: &str| option.get_default_values().iter().any(|usual| usual == value);
+            let words =
+                known.iter().map(|value| value.get_name()).filter(|value| !usual(value)).chain(VALUES);
+            let mut lines = words.map(|word| match word {
+                "" => format!("--{name}"),
+                word => format!("--{name}={word}"),
+            });
+            let changes = lines.find_map(|line| with(&line)).map(|found| found != without);
+            let is_of_no_picture = OF_NO_PICTURE.split(' ').any(|other| other == name);
+            if name != "output" && changes != Some(!is_of_no_picture) {
+                wrong.push(format!("--{name}: {changes:?}"));
+            }
+        }
+        assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     }
 }

@@ -142,14 +142,16 @@ fn check_output(output: &Path, arguments: &Render) -> anyhow::Result<()> {
 
 /// Replaces `{frame}` by four digits; if it is missing, puts them before the extension.
 pub fn frame_path(pattern: &Path, frame: u32) -> PathBuf {
+    if is_stdout(pattern) { pattern.to_owned() } else { named_by(pattern, &format!("{frame:04}")) }
+}
+
+/// Replaces `{frame}` by a word; if it is missing, puts that before the extension.
+pub fn named_by(pattern: &Path, word: &str) -> PathBuf {
     let text = pattern.to_string_lossy();
-    if is_stdout(pattern) {
-        return pattern.to_owned();
-    }
     if text.contains("{frame}") {
-        return PathBuf::from(text.replace("{frame}", &format!("{frame:04}")));
+        return PathBuf::from(text.replace("{frame}", word));
     }
     let stem = pattern.file_stem().unwrap_or_default().to_string_lossy();
     let extension = pattern.extension().unwrap_or_default().to_string_lossy();
-    pattern.with_file_name(format!("{stem}-{frame:04}.{extension}"))
+    pattern.with_file_name(format!("{stem}-{word}.{extension}"))
 }
