@@ -2,7 +2,7 @@
 
 use crate::{read_text, refusal, warnings};
 use bilux_formats::{ReadOptions, read, read_bytes};
-use bilux_math::{Rgb, Vec3};
+use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{SceneBuilder, Spec, Texture, Value};
 use std::sync::Arc;
 
@@ -221,6 +221,37 @@ fn textures_are_found_by_every_chain_of_names() {
         assert_eq!(scene.textures[0].texel(0, 0), Rgb::new(1.0, 0.0, 0.0), "{from}");
     }
     std::fs::remove_dir_all(folder).unwrap();
+}
+
+/// Maya turns a picture about its middle, wherever that is after it has been repeated, and moves it then.
+#[test]
+fn pictures_are_turned_about_their_middle() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("a.ppm"), "P3 1 1 255 255 0 0").unwrap();
+    for degrees in [0.0f32, 30.0, 90.0, 200.0] {
+        let shader = format!(
+            "<lambert><diffuse><texture texture='img' texcoord='UV'><extra><technique profile='MAYA'><repeatU>2</repeatU>\
+             <repeatV>4</repeatV><offsetU>0.1</offsetU><offsetV>0.3</offsetV><rotateUV>{degrees}</rotateUV></technique></extra></texture>\
+             </diffuse></lambert>"
+        );
+        let image = "<library_images><image id='img'><init_from>a.ppm</init_from></image></library_images>";
+        let text = with_material("", &shader, "")
+            .replace("<library_materials>", &format!("{image}<library_materials>"));
+        let path = folder.path().join("scene.dae");
+        std::fs::write(&path, text).unwrap();
+        let scene = read(&path, &ReadOptions::default()).unwrap();
+        let transform = scene.textures[0].transform.unwrap();
+        // v is upwards in the file, and downwards in a picture.
+        let at = |u: f32, v: f32| {
+            let found = transform.apply(Vec2::new(u, 1.0 - v));
+            Vec2::new(found.x, 1.0 - found.y)
+        };
+        let middle = at(0.25, 0.125);
+        assert!(middle.distance(Vec2::new(0.6, 0.8)) < 1e-5, "{degrees}: {middle}");
+        let [u, v] = [at(0.75, 0.125) - middle, at(0.25, 0.375) - middle];
+        assert!((u.length() - 1.0).abs() < 1e-5 && v.distance(Vec2::new(-u.y, u.x)) < 1e-5, "{u} {v}");
+        assert!((u.x - bilux_math::transcendental::cos(degrees.to_radians())).abs() < 1e-5, "{degrees}: {u}");
+    }
 }
 
 fn source(id: &str, kind: &str, list: &str, stride: usize) -> String {

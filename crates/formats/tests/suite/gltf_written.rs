@@ -340,3 +340,31 @@ fn keys_before_the_beginning_leave_the_rest_as_it_was() {
         }
     }
 }
+
+/// Pictures with all combinations of what is beyond their edges along each axis, and of texels that are blended or not.
+#[test]
+fn each_picture_keeps_its_own_sampler() {
+    use bilux_scene::texture::{Filter, Wrap};
+    let wraps = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
+    let mut scene = SceneBuilder::default();
+    for filter in [Filter::Linear, Filter::Nearest] {
+        for wrap in wraps.into_iter().flat_map(|u| wraps.map(|v| [u, v])) {
+            let texels = vec![Rgb::new(0.2, 0.4, 0.8), Rgb::new(0.9, 0.1, 0.3)];
+            scene.textures.push(Arc::new(Texture { wrap, filter, ..Texture::new("t", 2, 1, texels, false) }));
+            let spec = Spec::new(&format!("{wrap:?} {filter:?}"), "principled");
+            let material =
+                scene.add_material(spec.with("base_color", Value::Texture(scene.textures.len() - 1)));
+            let quad = Arc::new(shapes::quad(Vec3::ZERO, Vec3::X, Vec3::Y));
+            scene.objects.push(Object::new("o", quad, material));
+        }
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let (back, _) = there(&scene, &folder.path().join("a.glb"));
+    assert_eq!(back.objects.len(), 18);
+    for object in &back.objects {
+        let spec = &back.materials[object.material];
+        let Some((Value::Texture(index), _)) = spec.parameters.find("base_color") else { panic!("{spec:?}") };
+        let texture = &back.textures[*index];
+        assert_eq!(spec.name, format!("{:?} {:?}", texture.wrap, texture.filter));
+    }
+}

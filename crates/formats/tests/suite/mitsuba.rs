@@ -471,3 +471,55 @@ fn scenes_for_teaching_are_read() {
     let read = bilux_formats::read(&folder.path().join("main.xml"), &Default::default()).unwrap();
     assert_eq!(read.objects.len(), 2);
 }
+
+/// A projector's angle is that of the width of its picture, whose height follows from its shape. [Mitsuba 3, projector]
+#[test]
+fn projectors_throw_pictures_of_their_shape() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.xml");
+    // Tangents of half the width and half the height, for a picture that is wide and one that is high.
+    for (size, half) in [([4, 2], [1.0, 0.5]), ([2, 4], [1.0, 2.0])] {
+        let [width, height] = size;
+        let texels = "255 ".repeat(3 * width * height);
+        fs::write(folder.path().join("a.ppm"), format!("P3 {width} {height} 255 {texels}")).unwrap();
+        let picture = "<texture type=\"bitmap\" name=\"irradiance\"><string name=\"filename\" value=\"a.ppm\"/></texture>";
+        let emitter =
+            format!("<emitter type=\"projector\"><float name=\"fov\" value=\"90\"/>{picture}</emitter>");
+        fs::write(&file, format!("<scene version=\"3.0.0\">{emitter}</scene>")).unwrap();
+        let scene = read(&file, &ReadOptions::default()).unwrap();
+        let light = &scene.lights[0];
+        let Some((Value::Distribution(rays), _)) = light.parameters.find("distribution") else {
+            panic!("{light:?}")
+        };
+        for (azimuth, half) in [(0.0, half[0]), (90.0, half[1]), (180.0, half[0]), (270.0, half[1])] {
+            let lit = |tangent: f32| rays.at(f64::from(atan(tangent).to_degrees()), azimuth) > 0.0;
+            assert!(lit(0.95 * half) && !lit(1.05 * half), "{size:?} at {azimuth}");
+        }
+    }
+}
+
+/// Before version 1, pictures could go on in another way along each axis. [Mitsuba 0.6, 8.3.1]
+#[test]
+fn pictures_go_on_beyond_each_edge_as_older_files_say() {
+    use bilux_scene::texture::Wrap;
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.ppm"), "P3 2 1 255 255 0 0 0 255 0").unwrap();
+    let file = folder.path().join("a.xml");
+    for (modes, wanted) in [
+        (&[][..], [Wrap::Repeat; 2]),
+        (&[("wrapMode", "clamp")], [Wrap::Clamp; 2]),
+        (&[("wrapModeU", "mirror")], [Wrap::Mirror, Wrap::Repeat]),
+        (&[("wrapModeV", "clamp")], [Wrap::Repeat, Wrap::Clamp]),
+        (&[("wrapMode", "clamp"), ("wrapModeV", "mirror")], [Wrap::Clamp, Wrap::Mirror]),
+    ] {
+        let modes: String =
+            modes.iter().map(|(key, value)| format!("<string name=\"{key}\" value=\"{value}\"/>")).collect();
+        let texture = format!(
+            "<texture type=\"bitmap\" name=\"reflectance\"><string name=\"filename\" value=\"a.ppm\"/>{modes}</texture>"
+        );
+        let shape = format!("<shape type=\"rectangle\"><bsdf type=\"diffuse\">{texture}</bsdf></shape>");
+        fs::write(&file, format!("<scene version=\"0.6.0\">{shape}</scene>")).unwrap();
+        let scene = read(&file, &ReadOptions::default()).unwrap();
+        assert_eq!((scene.textures[0].wrap, warnings(&scene)), (wanted, String::new()), "{modes}");
+    }
+}

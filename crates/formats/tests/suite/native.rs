@@ -185,6 +185,10 @@ fn a_whole_turn_between_two_keyframes_is_one() {
     ] {
         assert_near(placed(spin, time), expected);
     }
+    // It grows meanwhile, evenly.
+    let grows = "keyframes = [{ time = 0 }, { time = 4, rotate = [0, 360, 0], scale = [3, 1, 5] }]";
+    assert_near(placed(grows, 1.0), Vec3::new(2.0 * 3.0, 2.0, -1.5));
+    assert_near(placed(grows, 2.0), Vec3::new(-2.0, 2.0, -9.0));
     let axis = "keyframes = [{ time = 0, rotate = { axis = [0, 1, 0], degrees = 0 } }, { time = 2, rotate = { axis = [0, 1, 0], degrees = 180 } }]";
     assert_near(placed(axis, 1.0), Vec3::new(3.0, 2.0, -1.0));
 }

@@ -256,9 +256,10 @@ fn shapes_of_an_instance_that_turns_move_along_an_arc() {
 /// [pbrt 2023, 2.10]: rotations are interpolated at constant angular speed, translations along a line.
 #[test]
 fn cameras_that_turn_do_so_at_constant_speed() {
-    for degrees in [90.0f32, 170.0] {
+    for (degrees, start, end) in [(90.0f32, 0.0f32, 1.0f32), (170.0, 0.0, 1.0), (90.0, 2.0, 6.0)] {
         let scene = scene(&format!(
             r#"
+            TransformTimes {start} {end}
             ActiveTransform EndTime
             Rotate {degrees} 0 1 0
             ActiveTransform All
@@ -275,9 +276,10 @@ fn cameras_that_turn_do_so_at_constant_speed() {
             // `Rotate` turns the world about the camera, so the camera turns the other way.
             let (sin, cos) = sin_cos(-(degrees * time).to_radians());
             let expected = Vec3::new(sin, 0.0, cos);
-            let forward = camera.forward(time);
-            assert!(forward.abs_diff_eq(expected, 2e-5), "{degrees} at {time}: {forward} for {expected}");
-            let position = camera.matrices(time).to_camera.inverse().transform_point3(Vec3::ZERO);
+            let moment = start + (end - start) * time;
+            let forward = camera.forward(moment);
+            assert!(forward.abs_diff_eq(expected, 2e-5), "{degrees} at {moment}: {forward} for {expected}");
+            let position = camera.matrices(moment).to_camera.inverse().transform_point3(Vec3::ZERO);
             assert!(position.abs_diff_eq(Vec3::new(1.0 + 2.0 * time, 0.0, 0.0), 1e-4), "{time}: {position}");
         }
     }

@@ -140,6 +140,65 @@ fn assemblies_have_places_colours_names_and_units() {
     );
 }
 
+/// A part in millimetres stands in an assembly in inches, by a point of it that is not its origin.
+#[test]
+fn parts_stand_in_assemblies_of_other_units() {
+    let text = seed("assembly_inches.step")
+        .replace("(#168,#160),#7);", "(#168,#160),#900);")
+        .replace("#165=CARTESIAN_POINT('',(0.,0.,0.));", "#165=CARTESIAN_POINT('',(1.,2.,0.));")
+        .replace(
+            "#8=APPLICATION_CONTEXT",
+            "#900=(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNIT_ASSIGNED_CONTEXT((#1,#5,#6))REPRESENTATION_CONTEXT('','3D'));\n\
+             #8=APPLICATION_CONTEXT",
+        );
+    let scene = scene(&text);
+    assert_eq!((warnings(&scene), scene.unit), (String::new(), 1e-3));
+    // Blocks of 1 × 2 × 3 mm, of which the point (1, 2, 0) is at (0, 0, 100) inches, and in one that lies along x at (10, 0, 100).
+    let found = measures(&scene);
+    assert_near(found.volume, 12.0);
+    let [low, high] = found.bounds;
+    assert!(low.distance(DVec3::new(-1.0, -2.0, 2538.0)) < 1e-3, "{low}");
+    assert!(high.distance(DVec3::new(257.0, 0.0, 2543.0)) < 1e-3, "{high}");
+}
+
+/// Normals are of the points that a face counts, one by one, or one of all. [ISO 10303-42, triangulated_face]
+#[test]
+fn tessellated_faces_have_the_normals_of_their_points() {
+    let points = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+    // From the middle of the cube on.
+    let outwards = |numbers: &[usize]| {
+        let normal = |i: &usize| {
+            let [x, y, z] = points[i - 1].map(|x| f64::from(2 * x - 1) / 3f64.sqrt());
+            format!("({x:.9},{y:.9},{z:.9})")
+        };
+        numbers.iter().map(normal).collect::<Vec<_>>().join(",")
+    };
+    let all = outwards(&[1, 2, 3, 4, 5, 6, 7, 8]);
+    let some = outwards(&[3, 4, 7, 8, 1, 5]);
+    let text = seed("tessellated.step")
+        .replace("=TRIANGULATED_FACE('',#8,8,()", &format!("=TRIANGULATED_FACE('',#8,8,({all})"))
+        .replace(
+            "COMPLEX_TRIANGULATED_FACE('',#8,8,()",
+            &format!("COMPLEX_TRIANGULATED_FACE('',#8,8,({some})"),
+        );
+    let scene = scene(&text);
+    let corners = scene.objects.iter().flat_map(|o| o.mesh.positions.iter().zip(&o.mesh.normals));
+    let mut count = 0;
+    for (p, normal) in corners {
+        let wanted = (p.as_dvec3() - DVec3::splat(0.5)).normalize();
+        assert!(normal.as_dvec3().distance(wanted) < 1e-5, "{p}: {normal}");
+        count += 1;
+    }
+    assert!(count >= 8);
+    let flat = seed("tessellated.step")
+        .replace("=TRIANGULATED_FACE('',#8,8,()", "=TRIANGULATED_FACE('',#8,8,((0.,0.6,0.8))");
+    let one = bilux_math::Vec3::new(0.0, 0.6, 0.8);
+    let scene = self::scene(&flat);
+    let has = |normal: &bilux_math::Vec3| normal.distance(one) < 1e-6;
+    let with = scene.objects.iter().flat_map(|o| &o.mesh.normals).filter(|normal| has(normal)).count();
+    assert!(with > 0 && with < scene.objects.iter().map(|o| o.mesh.normals.len()).sum());
+}
+
 /// [ISO 10303-46: an overriding styled item replaces the style of the item that it names.] In whatever order they stand.
 #[test]
 fn a_colour_that_overrides_another_counts() {

@@ -171,6 +171,35 @@ fn mixtures_layers_and_display_properties_follow_their_formulas() {
     }
 }
 
+/// A second layer that multiplies hides a material, whose colour nobody knows; a third one does not. [3MF Materials 1.2, 5]
+#[test]
+fn layers_above_the_second_multiply_what_is_below() {
+    let shade = Rgb::new(0.5, 0.25, 1.0);
+    let picture = bilux_pictures::Picture::from_rgb(2, 2, vec![shade; 4]).unwrap();
+    let png = bilux_pictures::write_bytes("png", &picture, &Default::default()).unwrap();
+    let base = r##"<basematerials id="5"><base name="a" displaycolor="#FF0000"/></basematerials>"##;
+    // Green with an alpha of 0.4 above red.
+    let green = r##"<m:colorgroup id="6"><m:color color="#00FF0066"/></m:colorgroup>"##;
+    let texture = r#"<m:texture2d id="3" path="/3D/t.png" contenttype="image/png"/><m:texture2dgroup id="4" texid="3"><m:tex2coord u="0" v="0"/></m:texture2dgroup>"#;
+    for (methods, wanted) in [
+        ("mix multiply", Rgb::new(0.6, 0.4, 0.0) * shade),
+        ("multiply multiply", Rgb::new(0.0, 1.0, 0.0) * shade),
+        ("mix mix", shade),
+    ] {
+        let layers = format!(
+            r#"<m:multiproperties id="7" pids="5 6 4" blendmethods="{methods}"><m:multi pindices="0 0 0"/></m:multiproperties>"#
+        );
+        let whole = format!("{base}{green}{texture}{layers}{}", object(1, r#"pid="7" pindex="0""#));
+        let scene = file_with(&model(&whole, &items(&[1])), &[("3D/t.png", &png)]).unwrap();
+        let material = &scene.materials[scene.objects[0].material];
+        let Some((Value::Texture(index), _)) = material.parameters.find("base_color") else {
+            panic!("{methods}: {material:?}")
+        };
+        let found = scene.textures[*index].at_one(Vec2::new(0.3, 0.6));
+        assert!((found - wanted).map(f32::abs).max_channel() < 4e-3, "{methods}: {found:?}, not {wanted:?}");
+    }
+}
+
 #[test]
 fn textures_lie_with_v_upwards() {
     let picture = bilux_pictures::Picture::from_rgb(1, 2, vec![Rgb::WHITE, Rgb::BLACK]).unwrap();
@@ -202,6 +231,10 @@ fn beams_are_tubes_with_balls_at_their_ends() {
     assert_eq!([ball(first), ball(second)], [(Vec3::ZERO, 1.0), (Vec3::Z * 4.0, 0.5)]);
     let [a, b, c] = tubes.triangles[0].map(|i| tubes.positions[i as usize]);
     assert!((b - a).cross(c - a).dot(tubes.normals[0]) > 0.0, "outwards");
+    // Across the lines from end to end, of which each vertex at one has its neighbour at the other.
+    for (ends, normal) in wall.chunks_exact(2).zip(tubes.normals.chunks_exact(2)) {
+        assert!((ends[1] - ends[0]).dot(normal[0]).abs() < 1e-6 && normal[0] == normal[1], "{normal:?}");
+    }
 }
 
 #[test]

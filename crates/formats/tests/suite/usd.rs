@@ -459,6 +459,35 @@ fn cameras_have_the_field_of_view_of_their_film() {
     assert!((of("fov") - 90.0).abs() < 1e-4, "2 atan(20 / 20)");
     // A focal length of 2 units through half of a diameter of 1 unit, and a quarter of the film to the right.
     assert_eq!([of("aperture"), of("focus"), of("principal_x"), of("frame")], [0.5, 7.0, 0.25, 1.0]);
+    // A film that is twice as wide as high, whose middle is 3 upwards and 2 to the right of the axis.
+    let scene = text(
+        "def Camera \"c\" { float horizontalAperture = 20\n float verticalAperture = 10\n float horizontalApertureOffset = 2\n \
+         float verticalApertureOffset = 3 }\ndef Cube \"x\" {}",
+    );
+    let shifted = ["principal_x", "principal_y"].map(|key| scene.cameras[0].spec.number(key).unwrap());
+    assert!((shifted[0] - 0.4).abs() < 1e-6 && (shifted[1] - 0.8).abs() < 1e-6, "{shifted:?}");
+}
+
+/// A dome's map is blended between the middles of its texels. The left edge is towards -z, as is the right one, between
+/// which there is no edge on a sphere; a quarter from the left is +x, and the middle +z. [OpenUSD, UsdLuxDomeLight]
+#[test]
+fn the_map_of_a_dome_has_no_seam() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("sky.ppm"), "P3 4 1 255 255 0 0 0 0 0 0 0 255 0 255 0").unwrap();
+    let path = folder.path().join("a.usda");
+    std::fs::write(&path, "#usda 1.0\ndef DomeLight \"l\" { asset inputs:texture:file = @sky.ppm@ }")
+        .unwrap();
+    let scene = read(&path, &ReadOptions::default()).unwrap();
+    let map = &scene.textures[0];
+    // Its middle is towards -z, with a quarter to each side of what lies between the middles of two texels there.
+    let (width, row) = (map.width(), map.height() / 2);
+    let quarter = width / 4;
+    for column in width / 2 - quarter / 2..width / 2 + quarter / 2 {
+        let right = (column as f32 + 0.5 - (width / 2 - quarter / 2) as f32) / quarter as f32;
+        let found = map.texel(column, row);
+        let off = [found.r - right, found.g - (1.0 - right), found.b].map(f32::abs);
+        assert!(off.iter().all(|off| *off < 1e-4), "{column}: {found:?}");
+    }
 }
 
 /// A cube that becomes round, with colours of faces, and coordinates of corners that are their places on each face.

@@ -126,6 +126,28 @@ fn blend_shapes_run_through_those_in_between() {
     assert!(close(whole[0], [0.0, 1.0, 0.0]));
 }
 
+/// A shape in between has offsets of normals of its own, which count where its offsets of points do.
+#[test]
+fn normals_turn_as_the_shapes_in_between_say() {
+    let shape = r#"uniform token[] skel:blendShapes = ["swell"]
+        rel skel:blendShapeTargets = </rig/skin/swell>
+        def BlendShape "swell" {
+            uniform vector3f[] offsets = [(4, 0, 0)]
+            uniform vector3f[] normalOffsets = [(-1, 0, 1)]
+            uniform vector3f[] inbetweens:half = [(0, 8, 0)] (weight = 0.5)
+            uniform vector3f[] inbetweens:half:normalOffsets = [(-1, 1, 0)]
+            uniform int[] pointIndices = [3]
+        }"#;
+    let normal = |time: f32| points(&arm(shape, time, None)).1.normalize();
+    // From x by way of y to z.
+    let side = std::f32::consts::FRAC_1_SQRT_2;
+    let ways = [[1.0, 0.0, 0.0], [side, side, 0.0], [0.0, 1.0, 0.0], [0.0, side, side], [0.0, 0.0, 1.0]];
+    for (quarter, wanted) in ways.into_iter().enumerate() {
+        let found = normal(0.25 * quarter as f32);
+        assert!(close(found, wanted), "{quarter}: {found}");
+    }
+}
+
 #[test]
 fn bindings_that_make_no_sense_keep_the_shape_and_are_named() {
     let fewer = BOUND.replace("[1, 0, 1, 0, 0.5, 0.5, 1, 0]", "[1, 0]");

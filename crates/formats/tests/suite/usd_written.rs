@@ -114,6 +114,31 @@ fn motion_becomes_samples_of_time() {
     }
 }
 
+/// A stage ends with the last key of all, wherever the object stands in the file.
+#[test]
+fn the_last_time_code_is_that_of_the_last_key() {
+    let until = |seconds: f32| {
+        let key = |time_seconds: f32| MotionKey {
+            time_seconds,
+            translation: Vec3::X * time_seconds,
+            rotation: Quat::IDENTITY,
+            scale: Vec3::ONE,
+        };
+        Motion::from_keys(vec![key(0.0), key(seconds)]).unwrap()
+    };
+    let mut scene = dressed(Spec::new("m", "diffuse"), quad());
+    for seconds in [1.0, 3.0, 2.0] {
+        let object = scene.objects[0].clone();
+        scene.objects.push(Object { motion: until(seconds), ..object });
+    }
+    let text = text_of(&scene);
+    let stated = |key: &str| -> f32 {
+        let rest = text.split(&format!("{key} = ")).nth(1).unwrap();
+        rest.split_whitespace().next().unwrap().parse().unwrap()
+    };
+    assert_eq!(stated("endTimeCode") / stated("timeCodesPerSecond"), 3.0);
+}
+
 /// Every light with what it sends: in candela, lux and nit as the specification of UsdLux gives them.
 #[test]
 fn lights_come_back_as_bright_as_they_were() {
@@ -355,4 +380,33 @@ fn categories_are_labels() {
     let read = crate::read_text("usd", text).unwrap();
     let of: Vec<&str> = read.objects.iter().map(|object| object.category.as_str()).collect();
     assert_eq!(of, ["room", "table"]);
+}
+
+/// Materials may use the brightness of one picture, each by a factor of its own.
+#[test]
+fn the_brightness_of_a_picture_counts_by_the_factor_of_each_material() {
+    let picture = Texture::new("t", 2, 1, vec![Rgb::grey(0.8), Rgb::grey(0.4)], true);
+    for factors in [[0.5, 1.0, 0.5], [1.0, 0.25, 0.5]] {
+        let mut scene = SceneBuilder::default();
+        for factor in factors {
+            scene.textures.push(Arc::new(Texture { factor: Rgb::grey(factor), ..picture.clone() }));
+            let rough = Value::Texture(scene.textures.len() - 1);
+            let material = scene.add_material(Spec::new("m", "principled").with("specular_roughness", rough));
+            scene.objects.push(Object::new("a", Arc::new(quad()), material));
+        }
+        let (back, _) = there(&scene, "a.usda");
+        for (object, factor) in back.objects.iter().zip(factors) {
+            let spec = &back.materials[object.material];
+            let Some((Value::Texture(index), _)) = spec.parameters.find("specular_roughness") else {
+                panic!("{spec:?}")
+            };
+            for (x, wanted) in [(0, 0.8), (1, 0.4)] {
+                let found = back.textures[*index].texel(x, 0).r;
+                assert!(
+                    (found - wanted * factor).abs() < 3e-3,
+                    "{factors:?}: {found} for {wanted} times {factor}"
+                );
+            }
+        }
+    }
 }

@@ -97,6 +97,7 @@ fn the_curve_of_a_profile_counts() {
         (b"rTRC", function(2, &[1.0, 1.0, -0.7, 128.0 / 255.0]), half),
         // An offset above, and another one below the straight part.
         (b"rTRC", function(4, &[1.0, 0.6, 0.0, 1.0, 0.0, 0.2 - 0.6 / 510.0, 0.0]), half),
+        (b"rTRC", function(4, &[2.0, 1.0, 0.0, 0.6, 0.9, 0.1, 0.4 * 128.0 / 255.0]), half),
         // No curve at all, and a damaged one.
         (b"desc", power(1.0), srgb),
         (b"rTRC", b"curv\0\0\0\0\0\0\xff\xff\0\0".to_vec(), srgb),

@@ -169,7 +169,7 @@ fn bitmap(maker: &mut Maker, plugin: &Plugin, _: Meaning) -> Result<TextureOrVal
         "nearest" => Filter::Nearest,
         _ => Filter::Linear,
     };
-    texture.wrap = [wrap(plugin)?; 2];
+    texture.wrap = [wrap(plugin, "wrap_mode_u")?, wrap(plugin, "wrap_mode_v")?];
     let matrix = to_uv(plugin)?;
     if matrix != DMat4::IDENTITY {
         let [x, y, shift] = [matrix.x_axis, matrix.y_axis, matrix.w_axis].map(|column| column.as_vec4());
@@ -179,9 +179,9 @@ fn bitmap(maker: &mut Maker, plugin: &Plugin, _: Meaning) -> Result<TextureOrVal
     Ok(TextureOrValue::Picture(Arc::new(texture)))
 }
 
-fn wrap(plugin: &Plugin) -> Result<Wrap, FormatError> {
-    let name = ["wrap_mode", "wrap_mode_u"].into_iter().find(|name| plugin.has(name)).unwrap_or("wrap_mode");
-    plugin.ignore(&["wrap_mode_v"]);
+/// Continuation of a texture beyond its edges along one axis, which files of version 0.5 can state alone.
+fn wrap(plugin: &Plugin, of_axis: &'static str) -> Result<Wrap, FormatError> {
+    let name = if plugin.has(of_axis) { of_axis } else { "wrap_mode" };
     match plugin.text(name)?.unwrap_or("repeat") {
         "repeat" => Ok(Wrap::Repeat),
         "mirror" => Ok(Wrap::Mirror),

@@ -31,8 +31,8 @@ pub(super) struct Document<'s> {
     pub(super) looks: HashMap<(usize, bool), Look>,
     /// Classes by mesh and material.
     pub(super) classes: HashMap<(*const Mesh, usize), String>,
-    /// The files of images, by whether their texels are numbers, and whether they are written as luminances.
-    pub(super) images: Vec<(Arc<Image>, bool, bool, String)>,
+    /// The files of images, by whether their texels are numbers, and by the factor of those that are written as luminances.
+    pub(super) images: Vec<(Arc<Image>, bool, Option<bilux_math::Rgb>, String)>,
     /// The last time code of any motion.
     pub(super) end: f64,
 }

@@ -101,16 +101,16 @@ impl Document<'_> {
         writing: &mut Writing,
     ) -> Result<String, FormatError> {
         let (image, is_data) = (&texture.image, texture.is_data);
-        let is_this = |(known, data, luminance, _): &&(Arc<_>, bool, bool, String)| {
-            Arc::ptr_eq(known, image) && *data == is_data && *luminance == as_luminance
-        };
         // The factor is part of a luminance.
-        let is_shared = !as_luminance || texture.factor == Rgb::WHITE;
-        if let Some((.., name)) = self.images.iter().find(is_this).filter(|_| is_shared) {
+        let luminance = as_luminance.then_some(texture.factor);
+        let is_this = |(known, data, of, _): &&(Arc<_>, bool, Option<Rgb>, String)| {
+            Arc::ptr_eq(known, image) && *data == is_data && *of == luminance
+        };
+        if let Some((.., name)) = self.images.iter().find(is_this) {
             return Ok(name.clone());
         }
         let bare = Texture {
-            factor: if as_luminance { texture.factor } else { Rgb::WHITE },
+            factor: luminance.unwrap_or(Rgb::WHITE),
             channel: None,
             threshold: None,
             ..texture.clone()
@@ -135,7 +135,7 @@ impl Document<'_> {
         }
         let bytes = write_bytes(format, &picture, &bilux_pictures::WriteOptions::default())?;
         let name = writing.add_numbered("texture", self.images.len() + 1, format, bytes);
-        self.images.push((image.clone(), is_data, as_luminance, name.clone()));
+        self.images.push((image.clone(), is_data, luminance, name.clone()));
         Ok(name)
     }
 }

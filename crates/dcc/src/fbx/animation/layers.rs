@@ -98,7 +98,7 @@ pub(super) fn play<'d>(
 }
 
 /// The values that a property has without animation.
-fn stated(properties: &Properties, property: &[u8]) -> DVec3 {
+pub(super) fn stated(properties: &Properties, property: &[u8]) -> DVec3 {
     let name = std::str::from_utf8(property).unwrap_or_default();
     let number = properties.number(name);
     properties

@@ -3,6 +3,7 @@
 use super::clip::Clip;
 use super::curve::Curve;
 use super::key::{Interpolation, Key, Rule, Tangent};
+use super::layers::stated;
 use crate::fbx::document::{Animated, Document, Index, Properties, display_name};
 use crate::fbx::tree::{Node, Value};
 use bilux_import::FormatError;
@@ -88,9 +89,7 @@ fn value(
     ticks: f64,
     budget: &mut Budget,
 ) -> Result<DVec3, FormatError> {
-    let name = std::str::from_utf8(property).unwrap_or_default();
-    let number = properties.number(name);
-    let mut values = properties.vector(name).or(number.map(DVec3::splat)).unwrap_or(DVec3::ZERO);
+    let mut values = stated(properties, property);
     let axes = ["X", "Y", "Z"].map(|axis| part(channel, axis));
     let parts = if axes.iter().all(Option::is_none) { [Some(channel), None, None] } else { axes };
     for (axis, part) in parts.into_iter().enumerate() {

@@ -144,6 +144,24 @@ fn lights_shine_down_their_node_as_bright_as_their_programs_show_them() {
     assert_eq!((spot.number("angle"), spot.number("inner_angle")), (Some(30.0), Some(20.0)), "half angles");
 }
 
+/// In a file of centimetres, lamps are weaker by a power of the centimetres to what they light, and light a white surface of irradiance π
+/// from a distance of 1 if their intensity is 100.
+#[test]
+fn lights_decay_over_the_units_of_their_file() {
+    for decay in 0..4 {
+        let list = vec![p("Intensity", &[200.0]), p("DecayType", &[f64::from(decay)])];
+        let attribute = object("NodeAttribute", 6, "", "Light", vec![properties(list)]);
+        let lamp = model(7, "lamp", vec![p("Lcl Translation", &[0.5, 1.0, 5.0])]);
+        let objects = vec![quad(1), model(2, "node", vec![]), attribute, lamp];
+        let links = vec![link(1, 2, ""), link(2, 0, ""), link(6, 7, ""), link(7, 0, "")];
+        let scene = read_all(&file(vec![p("UnitScaleFactor", &[1.0])], objects, links));
+        // The middle of the quad is 5 cm below.
+        let irradiance = scene.lights[0].colour("intensity").unwrap().g / (0.05 * 0.05);
+        let wanted = 2.0 * PI / 5f32.powi(decay);
+        assert!((irradiance / wanted - 1.0).abs() < 1e-4, "{decay}: {irradiance}, not {wanted}");
+    }
+}
+
 /// A film of 36 × 24 mm behind a lens of 50 mm sees 26.99° × 39.6°, as any table of lenses says.
 #[test]
 fn cameras_look_along_x_with_the_angle_of_their_lens() {

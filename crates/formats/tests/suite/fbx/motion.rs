@@ -73,6 +73,38 @@ fn curves_move_nodes_from_the_beginning_of_their_animation() {
     );
 }
 
+/// A curve from 1 to 5 within a second repeats itself so often, before and after: it begins anew, goes back, or goes on.
+#[test]
+fn curves_repeat_themselves_as_often_as_they_say() {
+    let place = |end: &'static str, letter: &str, times: i32, time: f32| {
+        let mut curve = curve(23, vec![1.0, 5.0], 4, [0.0; 4]);
+        let how = vec![n("Type", vec![text(letter)], vec![]), n("Repetition", vec![V::Int(times)], vec![])];
+        curve.children.push(n(end, vec![], how));
+        let nodes = animated(placed(vec![]), 2, "Lcl Translation", "d|X", curve);
+        at(&at_time(&nodes, time, None).unwrap().objects[0], [0.0; 3]).x
+    };
+    let (before, after) = ("Pre-Extrapolation", "Post-Extrapolation");
+    // One second later and a quarter, where it ends, and what is left of that without an end (-1).
+    for (end, letter, times, wanted) in [
+        (after, "R", 2, [2.0, 2.0, 5.0]),
+        (after, "M", 1, [4.0, 1.0, 1.0]),
+        (after, "M", 2, [4.0, 2.0, 5.0]),
+        (after, "A", 1, [6.0, 9.0, 9.0]),
+        (after, "A", 2, [6.0, 10.0, 13.0]),
+        (after, "A", -1, [6.0, 10.0, 34.0]),
+        (after, "C", 1, [5.0, 5.0, 5.0]),
+        (before, "R", 2, [4.0, 4.0, 1.0]),
+        (before, "M", 1, [2.0, 5.0, 5.0]),
+        (before, "A", 1, [0.0, -3.0, -3.0]),
+        (before, "A", 2, [0.0, -4.0, -7.0]),
+    ] {
+        let beyond = |seconds: f32| if end == after { 1.0 + seconds } else { -seconds };
+        let found = [0.25, 1.25, 7.25].map(|seconds| place(end, letter, times, beyond(seconds)));
+        let is_near = found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-4);
+        assert!(is_near, "{end} {letter} {times}: {found:?}, not {wanted:?}");
+    }
+}
+
 /// Keys at 0, 3 and 6: the middle one is on the line, so that all curves that know it have its slope, 3.
 #[test]
 fn slopes_that_the_file_does_not_state_come_from_the_keys_around() {
@@ -96,6 +128,32 @@ fn slopes_that_the_file_does_not_state_come_from_the_keys_around() {
     assert!((place(&step, STRAIGHT | 0x1000, [0.0; 4], 0.5) - flat_after_line(2.0)).abs() < 1e-5);
     // Full tension is a rest at every key.
     assert!((place(&hill, SHAPED, [1.0, 0.0, 0.0, 0.0], 0.25) - 2.0 * 0.15625).abs() < 1e-5);
+}
+
+/// Before version 7, takes list channels below the names of nodes: what neither they nor the node say is as it is at rest.
+#[test]
+fn takes_of_older_files_move_the_axes_that_they_list() {
+    let place = |channel: &str, time: f32| {
+        let text = format!(
+            "; FBX 6.1.0 project file\nFBXHeaderExtension:  {{\nFBXHeaderVersion: 1003\nFBXVersion: 6100\n}}\nObjects:  {{\n\
+             Model: \"Model::a\", \"Mesh\" {{\nVersion: 232\nVertices: 0,0,0,1,0,0,1,2,0,0,2,0\nPolygonVertexIndex: 0,1,2,-4\n}}\n\
+             GlobalSettings:  {{\nProperties60:  {{\nProperty: \"UnitScaleFactor\", \"double\", \"\",100\n}}\n}}\n}}\n\
+             Connections:  {{\nConnect: \"OO\", \"Model::a\", \"Model::Scene\"\n}}\nTakes:  {{\nCurrent: \"walk\"\nTake: \"walk\" {{\n\
+             LocalTime: 0,{SECOND}\nModel: \"Model::a\" {{\nChannel: \"Transform\" {{\n{channel}\n}}\n}}\n}}\n}}\n"
+        );
+        let options = ReadOptions { time, ..ReadOptions::default() };
+        let scene = read_bytes(text.as_bytes(), "fbx", None, "scene.fbx", &options).unwrap();
+        assert_eq!(scene.inventory.animations[0].name, "walk");
+        at(&scene.objects[0], [1.0, 2.0, 3.0])
+    };
+    let axis = |name: &str, from: f32, to: f32| {
+        format!("Channel: \"{name}\" {{\nKeyVer: 4005\nKeyCount: 2\nKey: 0,{from},L,{SECOND},{to},L\n}}\n")
+    };
+    let of = |letter: &str, inside: String| format!("Channel: \"{letter}\" {{\n{inside}\n}}\n");
+    near(place(&of("T", axis("Y", 1.0, 5.0)), 0.5), [1.0, 5.0, 3.0]);
+    near(place(&of("R", axis("Z", 0.0, 180.0)), 0.5), [-2.0, 1.0, 3.0]);
+    near(place(&of("S", axis("X", 1.0, 3.0)), 1.0), [3.0, 2.0, 3.0]);
+    near(place(&of("S", axis("X", 1.0, 3.0) + "Channel: \"Z\" {\nDefault: 2\n}\n"), 0.5), [2.0, 2.0, 6.0]);
 }
 
 /// The quad's upper vertices follow a bone that is turned a quarter about x.
