@@ -26,7 +26,7 @@ fn run_array(job: &Path) -> usize {
     last + 1
 }
 
-/// What a scheduler is told of the progress of a command, in percent, as OpenJD's specification has it.
+/// Progress of a command in percent, as a scheduler is told of it by OpenJD's specification.
 fn told(folder: &Path, words: &[&str]) -> Vec<f64> {
     let mut task = Command::cargo_bin("bilux").unwrap();
     let done = task.current_dir(folder).args(words).assert().success();

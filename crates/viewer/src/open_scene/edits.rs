@@ -197,7 +197,7 @@ mod tests {
         assert_eq!(radiances(&now)[1], Value::Number(7.0));
     }
 
-    /// What is said of a camera is not its way, whether it is said, taken back or said again.
+    /// Edits of a camera leave it on its way, also where they are taken back and made again.
     #[test]
     fn a_camera_that_moves_goes_on_to_move_when_it_is_edited() {
         let mut scene = session().scene().clone();
