@@ -12,7 +12,7 @@ use std::time::SystemTime;
 /// The folder of each crate, and the packages whose tests cover it: the consequences of one crate's mathematics are
 /// mostly tested in the crates above it.
 const SUITES: &[(&str, &[&str])] = &[
-    ("math", &["bilux-math", "bilux-accel", "bilux-scene", "bilux-transport"]),
+    ("math", &["bilux-math", "bilux-accel", "bilux-pictures", "bilux-scene", "bilux-transport"]),
     ("accel", &["bilux-accel"]),
     ("visibility", &["bilux-visibility"]),
     ("scene", &["bilux-scene", "bilux-transport", "bilux-validation"]),

@@ -5,6 +5,7 @@ use bilux_formats::{FormatError, ReadOptions};
 use bilux_math::{DMat3, DVec3};
 use bilux_pictures::Limits;
 use bilux_scene::cameras::CameraSpec;
+use bilux_scene::lights::surrounds;
 pub use bilux_scene::presets::{
     Ground, PRESETS, PresetEntry, Studio, add_fog, add_missing, apply, frame, set_upright, shadow_catcher,
 };
@@ -83,7 +84,7 @@ pub fn surround(scene: &mut SceneBuilder, around: &Path, options: &ReadOptions) 
 }
 
 fn replace_surroundings(scene: &mut SceneBuilder, light: Spec) {
-    scene.lights.retain(|old| !matches!(&*old.kind, "environment" | "sky") || old.is_backdrop());
+    scene.lights.retain(|old| !surrounds(&old.kind) || old.is_backdrop());
     scene.lights.push(light);
 }
 
@@ -187,14 +188,15 @@ fn picture_light(scene: &mut SceneBuilder, picture: &Path, options: &ReadOptions
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bilux_scene::LIGHTS;
 
     #[test]
     fn surroundings_that_need_no_file_take_the_place_of_those_there_are() {
         let surrounded = |around: &str| {
             let mut scene = SceneBuilder { describes_all_light: true, ..SceneBuilder::default() };
-            for (name, kind) in [("lamp", "point"), ("map", "environment"), ("day", "sky")] {
-                scene.lights.push(Spec::new(name, kind));
-            }
+            scene.lights.push(Spec::new("lamp", "point"));
+            let kinds = LIGHTS.iter().map(|row| row.entry.name).filter(|kind| surrounds(kind));
+            scene.lights.extend(kinds.map(|kind| Spec::new(kind, kind)));
             scene.lights.push(Spec::new("behind", "environment").with("backdrop", true));
             let read = surround(&mut scene, Path::new(around), &ReadOptions::default());
             let names: Vec<String> = scene.lights.iter().map(|light| light.name.clone()).collect();
@@ -208,7 +210,8 @@ mod tests {
         let (studio, scene) = surrounded("studio");
         assert_eq!(studio.unwrap(), (names(&["behind"]), true, false));
         assert!(!bilux_scene::presets::seems_lit(&scene));
-        assert_eq!(surrounded("none").0.unwrap(), (names(&["lamp", "map", "day", "behind"]), false, true));
+        let before = names(&["lamp", "environment", "sky", "cie-sky", "perez-sky", "behind"]);
+        assert_eq!(surrounded("none").0.unwrap(), (before, false, true));
         assert!(surrounded("./sky").0.unwrap_err().to_string().contains("cannot open"), "that is a file");
     }
 }

@@ -3,6 +3,7 @@
 use crate::Error;
 use bilux_math::Motion;
 use bilux_scene::cameras::CameraSpec;
+use bilux_scene::lights::surrounds;
 use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, SceneError, Span, Spec, Texture, Value};
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -112,8 +113,7 @@ fn put<T: Debug>(old: &mut T, new: T) -> bool {
 }
 
 fn put_environment(scene: &mut SceneBuilder, environment: Option<Spec>) -> bool {
-    let is_around =
-        |light: &Spec| matches!(light.kind.as_str(), "environment" | "sky") && !light.is_backdrop();
+    let is_around = |light: &Spec| surrounds(&light.kind) && !light.is_backdrop();
     let before = scene.lights.clone();
     // It keeps its number.
     let first = scene.lights.iter().position(is_around);

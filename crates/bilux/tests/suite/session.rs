@@ -4,7 +4,7 @@
 use bilux::math::Motion;
 use bilux::math::transcendental::{atan, tan};
 use bilux::prelude::*;
-use bilux::scene::TreeWork;
+use bilux::scene::{LIGHTS, TreeWork};
 use bilux::transport::Progress;
 use bilux::transport::aovs::Aov;
 use bilux::{Budget, Edit, Session};
@@ -76,6 +76,23 @@ fn after_every_edit_the_picture_is_that_of_a_fresh_job() {
             assert!(session.apply(edit).unwrap() && session.samples() == 0, "{name}");
             let fresh = fresh(session.scene(), &user);
             assert!(finished(&mut session) == fresh, "{name}");
+        }
+    }
+}
+
+/// An environment takes the place of what is around the scene, of whatever kind, and without another one nothing is.
+#[test]
+fn an_environment_takes_the_place_of_every_kind_of_sky() {
+    for row in LIGHTS.iter().filter(|row| row.surrounds) {
+        let mut scene = cornell();
+        scene.add_light(Spec::new("around", row.entry.name));
+        let mut session = Session::new(scene, &Parameters::default()).unwrap();
+        let others = session.scene().lights.len() - 1;
+        for (environment, count) in [(Some(Spec::new("new", "environment")), 1), (None, 0)] {
+            session.apply(Edit::Environment(environment)).unwrap();
+            let lights = &session.scene().lights;
+            assert!(lights.iter().all(|light| light.name != "around"), "{}", row.entry.name);
+            assert_eq!(lights.len(), others + count, "{}", row.entry.name);
         }
     }
 }

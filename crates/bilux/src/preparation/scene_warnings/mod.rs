@@ -6,6 +6,7 @@ mod textures;
 use crate::preparation::presets::{Ground, Studio};
 use bilux_math::transcendental::{asin, atan2};
 use bilux_math::{Vec2, Vec3};
+use bilux_scene::lights::surrounds;
 use bilux_scene::{
     Camera, CameraSample, Mesh, Ray, Scene, SceneBuilder, SceneError, Span, Spec, Surface, Tracer, Warning,
 };
@@ -83,15 +84,15 @@ pub(crate) fn of_ground(studio: &Studio, has_ground: bool, has_backdrop: bool) -
     Some(Warning { message: message.to_owned(), at: Span::default() })
 }
 
-/// The kinds of light that are visible themselves.
-const SEEN_LIGHTS: [&str; 4] = ["rect", "sphere", "environment", "sky"];
+/// The kinds of light that are visible themselves, beside those that surround the scene.
+const SEEN_LIGHTS: [&str; 2] = ["rect", "sphere"];
 
 /// The kinds of cameras that measure the light that arrives.
 const METERS: [&str; 1] = ["irradiance"];
 
 /// Refuses a scene with nothing to see.
 pub(crate) fn check_not_empty(scene: &SceneBuilder) -> Result<(), SceneError> {
-    let is_seen = |light: &Spec| SEEN_LIGHTS.contains(&light.kind.as_str());
+    let is_seen = |light: &Spec| surrounds(&light.kind) || SEEN_LIGHTS.contains(&light.kind.as_str());
     let is_full = |mesh: &Mesh| !mesh.triangles.is_empty() || mesh.stroke_count() > 0;
     let has_shapes = scene.objects.iter().any(|object| is_full(&object.mesh));
     if scene.objects.iter().any(|object| shows_something(&object.mesh)) {
@@ -225,7 +226,7 @@ mod tests {
     use crate::Job;
     use bilux_math::Vec3;
     use bilux_scene::cameras::CameraSpec;
-    use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, Spec, Value, mesh::shapes};
+    use bilux_scene::{LIGHTS, Mesh, Object, Parameters, SceneBuilder, Spec, Value, mesh::shapes};
     use std::sync::Arc;
 
     /// The warnings for a camera at this position, with a ball of this material at the origin.
@@ -246,6 +247,21 @@ mod tests {
         assert!(reported(shell(), [0.1, 0.2, 0.0])[0].contains("single-sided"));
         assert!(reported(shell(), [0.0, 0.0, -3.0]).is_empty(), "outside");
         assert!(reported(Spec::new("clay", "diffuse"), [0.1, 0.2, 0.0]).is_empty(), "both sides");
+    }
+
+    /// A light that is seen makes a picture without any surface: a panel, a ball, an environment, and every kind of sky.
+    #[test]
+    fn lights_that_are_seen_need_no_surface() {
+        for row in LIGHTS {
+            let kind = row.entry.name;
+            let mut spec = Spec::new("it", kind);
+            if ["rect", "sphere"].contains(&kind) {
+                spec = spec.with("intensity", 3.0f32);
+            }
+            let scene = SceneBuilder { lights: vec![spec], ..SceneBuilder::default() };
+            let is_seen = ["rect", "sphere", "environment", "sky", "cie-sky", "perez-sky"].contains(&kind);
+            assert_eq!(Job::new(&scene, &Parameters::default()).is_ok(), is_seen, "{kind}");
+        }
     }
 
     #[test]
