@@ -34,11 +34,11 @@ pub struct Serve {
     /// Let viewers change materials, lights and cameras, and drop in other files; the scene file is not modified
     #[arg(long, help_heading = help::COMMON_OPTIONS)]
     pub edit: bool,
+    #[command(flatten)]
+    pub studio: StudioArguments,
     /// Change any setting of the picture (`bilux list settings`)
     #[arg(long = "set", value_name = "KEY=VALUE", help_heading = help::PICTURE)]
     pub set: Vec<String>,
-    #[command(flatten)]
-    pub studio: StudioArguments,
     #[command(flatten)]
     pub choices: Choices,
 }
