@@ -148,16 +148,16 @@ fn lights_shine_down_their_node_as_bright_as_their_programs_show_them() {
 /// from a distance of 1 if their intensity is 100.
 #[test]
 fn lights_decay_over_the_units_of_their_file() {
-    for decay in 0..4 {
-        let list = vec![p("Intensity", &[200.0]), p("DecayType", &[f64::from(decay)])];
+    // The middle of the quad is 5 cm below.
+    for (decay, weaker) in [(0.0, 1.0), (1.0, 5.0), (2.0, 25.0), (3.0, 125.0)] {
+        let list = vec![p("Intensity", &[200.0]), p("DecayType", &[decay])];
         let attribute = object("NodeAttribute", 6, "", "Light", vec![properties(list)]);
         let lamp = model(7, "lamp", vec![p("Lcl Translation", &[0.5, 1.0, 5.0])]);
         let objects = vec![quad(1), model(2, "node", vec![]), attribute, lamp];
         let links = vec![link(1, 2, ""), link(2, 0, ""), link(6, 7, ""), link(7, 0, "")];
         let scene = read_all(&file(vec![p("UnitScaleFactor", &[1.0])], objects, links));
-        // The middle of the quad is 5 cm below.
         let irradiance = scene.lights[0].colour("intensity").unwrap().g / (0.05 * 0.05);
-        let wanted = 2.0 * PI / 5f32.powi(decay);
+        let wanted = 2.0 * PI / weaker;
         assert!((irradiance / wanted - 1.0).abs() < 1e-4, "{decay}: {irradiance}, not {wanted}");
     }
 }
