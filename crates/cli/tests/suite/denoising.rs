@@ -136,6 +136,52 @@ fn python3_locates_pyoidn_and_installed_packages_are_not_advertised() {
     assert!(is_true || cfg!(target_os = "macos"), "{said}");
 }
 
+/// The scripts of pyenv say by where they lie which version they start: a thumbnail need not wait for one.
+#[cfg(unix)]
+#[test]
+fn pyoidn_of_pyenv_is_found_and_its_python3_is_not_started() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = folder();
+    let root = folder.path().join("pyenv");
+    let package = root.join("versions/3.12.4/lib/python3.12/site-packages/pyoidn/oidn/lib");
+    std::fs::create_dir_all(&package).unwrap();
+    std::fs::write(package.join("libOpenImageDenoise.so.2"), "no library").unwrap();
+    std::fs::create_dir_all(root.join("versions/3.11.0")).unwrap();
+    std::fs::write(root.join("version"), "3.11.0\n").unwrap();
+    std::fs::create_dir_all(root.join("shims")).unwrap();
+    let shim = root.join("shims/python3");
+    std::fs::write(&shim, format!("#!/bin/sh\n: >{}\n", folder.path().join("started").display())).unwrap();
+    std::fs::set_permissions(&shim, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let said = |version: &str| {
+        let mut command = Command::cargo_bin("bilux").unwrap();
+        let arguments = ["render", "pot.obj", "--size", "16x16", "--noise", "0.5", "-v", "-o", "a.png"];
+        command
+            .current_dir(folder.path())
+            .env_clear()
+            .env("PATH", root.join("shims"))
+            .env("HOME", folder.path());
+        command.env("PYENV_VERSION", version).args(arguments);
+        String::from_utf8(command.assert().success().get_output().stderr.clone()).unwrap()
+    };
+    let without = said("");
+    assert!(!folder.path().join("started").exists());
+    if without.contains("denoised by Open Image Denoise") {
+        return; // The system has one.
+    }
+    assert!(without.contains("pip install pyoidn"), "the usual version has none: {without}");
+    // The version that this folder has.
+    std::fs::write(folder.path().join(".python-version"), "3.12.4\n").unwrap();
+    for said in [said(""), said("3.12.4:3.11.0")] {
+        let is_found = said.contains("is installed, but cannot be used");
+        assert!(is_found || cfg!(target_os = "macos"), "{said}");
+    }
+    assert!(said("3.11.0").contains("pip install pyoidn"));
+    assert!(!folder.path().join("started").exists());
+    // A version that is not there is asked for.
+    said("3.9.1");
+    assert!(folder.path().join("started").exists());
+}
+
 /// In a sandbox the library is loaded before the scene is read, so that its error is reported as it is without a
 /// sandbox.
 #[cfg(target_os = "linux")]
