@@ -48,7 +48,11 @@ pub fn finish(input: &Input, job: &Job, target: &Target, build_seconds: f64) -> 
     }
     if outcome.rendered.cancelled && outcome.samples_per_pixel() == 0.0 {
         let status = interrupt.exit_status();
-        end(status, "it was stopped before there was a picture to save");
+        let why = match arguments.timeout.filter(|_| interrupt.timed_out()) {
+            Some(timeout) => format!("--timeout: the time of {} s was up", timeout.as_secs_f64()),
+            None => "it was stopped".to_owned(),
+        };
+        end(status, &format!("{why} before there was a picture to save"));
     }
     let rendered = input.begun.get().elapsed();
     let denoiser = denoiser.filter(|_| !outcome.rendered.cancelled);
