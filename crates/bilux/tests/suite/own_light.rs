@@ -113,6 +113,30 @@ fn emission_that_lights_next_to_nothing_is_sampled_rarely_beside_the_studio() {
     assert_eq!(faint(&outside), 0);
 }
 
+/// A small lamp low above the floor of a large hall, seen from this place.
+fn hall(radiance: f32, eye: Vec3) -> SceneBuilder {
+    let mut hall = file();
+    put(&mut hall, cuboid(Vec3::new(-9.0, -0.1, -9.0), Vec3::new(9.0, 0.0, 9.0)), clay(0.6));
+    put(&mut hall, cuboid(Vec3::new(-9.0, 0.0, -9.0), Vec3::new(9.0, 6.0, -8.9)), clay(0.6));
+    put(&mut hall, panel(Vec3::Y * 0.15, Vec3::X * 0.05, Vec3::Z * 0.05), glowing(radiance));
+    let camera = Spec::new("eye", "perspective").with("position", eye).with("look_at", Vec3::ZERO);
+    hall.cameras.push(CameraSpec::new(camera.with("fov", 40.0f32)));
+    hall
+}
+
+#[test]
+fn what_a_lamp_lights_close_to_the_camera_is_sampled_everywhere() {
+    let of = |hall: &SceneBuilder| {
+        let job = job(hall);
+        let has_room = job.scene().lights().iter().any(|light| light.name == "room");
+        (has_room, job.scene().lights().iter().filter(|light| light.is_faint).count())
+    };
+    // Much too weak for the hall, and much of the light in the picture.
+    assert_eq!(of(&hall(2.0, Vec3::new(0.0, 1.2, 1.2))), (true, 0));
+    // Twenty times as strong, it lights nothing that counts where the whole hall is seen: its area is what power is compared with.
+    assert_eq!(of(&hall(40.0, Vec3::new(0.0, 8.0, 30.0))), (true, 1));
+}
+
 #[test]
 fn scenes_of_emitters_only_get_the_studio() {
     let mut scene = file();
