@@ -105,17 +105,25 @@ fn prims_that_one_joint_moves_are_elsewhere_and_keep_their_mesh() {
     assert!(close(points(&scene).0[3], [2.0, 2.0, 105.0]));
 }
 
-#[test]
-fn blend_shapes_run_through_those_in_between() {
-    let shape = r#"uniform token[] skel:blendShapes = ["swell"]
+/// A shape of the skin's last point, with one in between and with more of its own.
+fn swell(more: &str) -> String {
+    format!(
+        r#"uniform token[] skel:blendShapes = ["swell"]
         rel skel:blendShapeTargets = </rig/skin/swell>
-        def BlendShape "swell" {
+        def BlendShape "swell" {{
             uniform vector3f[] offsets = [(4, 0, 0)]
             uniform vector3f[] normalOffsets = [(-1, 0, 1)]
             uniform vector3f[] inbetweens:half = [(0, 8, 0)] (weight = 0.5)
+            {more}
             uniform int[] pointIndices = [3]
-        }"#;
-    let at = |time: f32| points(&arm(shape, time, None));
+        }}"#
+    )
+}
+
+#[test]
+fn blend_shapes_run_through_those_in_between() {
+    let shape = swell("");
+    let at = |time: f32| points(&arm(&shape, time, None));
     // Without joints the mesh is where its prim is.
     assert!(close(at(0.0).0[3], [3.0, 0.0, 0.0]));
     assert!(close(at(0.25).0[3], [3.0, 4.0, 0.0]));
@@ -129,16 +137,8 @@ fn blend_shapes_run_through_those_in_between() {
 /// A shape in between has offsets of normals of its own, which count where its offsets of points do.
 #[test]
 fn normals_turn_as_the_shapes_in_between_say() {
-    let shape = r#"uniform token[] skel:blendShapes = ["swell"]
-        rel skel:blendShapeTargets = </rig/skin/swell>
-        def BlendShape "swell" {
-            uniform vector3f[] offsets = [(4, 0, 0)]
-            uniform vector3f[] normalOffsets = [(-1, 0, 1)]
-            uniform vector3f[] inbetweens:half = [(0, 8, 0)] (weight = 0.5)
-            uniform vector3f[] inbetweens:half:normalOffsets = [(-1, 1, 0)]
-            uniform int[] pointIndices = [3]
-        }"#;
-    let normal = |time: f32| points(&arm(shape, time, None)).1.normalize();
+    let shape = swell("uniform vector3f[] inbetweens:half:normalOffsets = [(-1, 1, 0)]");
+    let normal = |time: f32| points(&arm(&shape, time, None)).1.normalize();
     // From x by way of y to z.
     let side = std::f32::consts::FRAC_1_SQRT_2;
     let ways = [[1.0, 0.0, 0.0], [side, side, 0.0], [0.0, 1.0, 0.0], [0.0, side, side], [0.0, 0.0, 1.0]];
