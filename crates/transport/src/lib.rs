@@ -45,6 +45,7 @@ pub use integrators::{INTEGRATORS, IntegratorEntry};
 pub use labels::labels;
 pub use light::choice::LightChoice;
 pub use light::emission::{Emission, Guide};
+pub use passes::completion::Completion;
 pub use passes::features::{FEATURE_SAMPLES, Features, coverage, features};
 pub use passes::illumination::{Illumination, illumination};
 pub use passes::layers::Strategy;

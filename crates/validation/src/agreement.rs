@@ -14,7 +14,8 @@
 //! whose light is not known to 3% yet, or whose pictures are skewed, stay undecided. The whole picture is a cell too.
 
 use crate::chi_square::uniforms;
-use crate::statistics::{estimate, is_skewed, sidak, welch};
+use crate::judging::{CellVerdict, Judge, judge, judge_known};
+use crate::statistics::sidak;
 use bilux::Error;
 use bilux::formats::ReadOptions;
 use bilux::gallery::GENERATORS;
@@ -34,9 +35,6 @@ pub const PICTURES: usize = 32;
 
 /// Side of a block, in pixels.
 pub const BLOCK: usize = 8;
-
-/// Largest standard error for a decision, as a fraction of the light: beyond it, too little has been found.
-const COARSE: f64 = 0.03;
 
 /// A technique for finding light.
 #[derive(Clone, Debug)]
@@ -271,7 +269,27 @@ impl Stage {
         (b, of_b): (&Technique, &Evidence),
     ) -> Comparison {
         let everywhere = a.finds_mirrored && b.finds_mirrored;
-        self.comparison(&of_a.cells, &of_b.cells, |cell| everywhere || self.plain[cell / 3])
+        self.comparison(&of_a.cells, &of_b.cells, |cell| everywhere || self.plain[cell / 3], judge)
+    }
+
+    /// As [`Stage::compare`], in those cells only that each half of each technique's pictures knows by itself. Where rare paths bring much
+    /// of the light, as where light subpaths end at a glossy surface, a few pictures without any of them look as if they knew it.
+    pub fn compare_known(
+        &self,
+        (a, of_a): (&Technique, &Evidence),
+        (b, of_b): (&Technique, &Evidence),
+    ) -> Comparison {
+        let everywhere = a.finds_mirrored && b.finds_mirrored;
+        let is_common = |cell: usize| everywhere || self.plain[cell / 3];
+        self.comparison(&of_a.cells, &of_b.cells, is_common, judge_known)
+    }
+
+    /// Whether a technique renders this: not all find what shines in media.
+    ///
+    /// # Errors
+    /// When the technique cannot be made.
+    pub fn renders(&self, technique: &Technique) -> Result<bool, Error> {
+        Ok(!self.scene.has_glowing_media() || integrators::build(&technique.spec)?.sees_glow())
     }
 
     /// Compares the first half of a technique's pictures with the second: any difference there is chance.
@@ -283,10 +301,16 @@ impl Stage {
             };
             of.cells.iter().map(of_cell).collect()
         };
-        self.comparison(&half(true), &half(false), |_| true)
+        self.comparison(&half(true), &half(false), |_| true, judge)
     }
 
-    fn comparison(&self, a: &[Vec<f64>], b: &[Vec<f64>], is_common: impl Fn(usize) -> bool) -> Comparison {
+    fn comparison(
+        &self,
+        a: &[Vec<f64>],
+        b: &[Vec<f64>],
+        is_common: impl Fn(usize) -> bool,
+        judge: Judge,
+    ) -> Comparison {
         let mut found = Comparison::default();
         let common: Vec<usize> = (0..a.len()).filter(|&cell| is_common(cell)).collect();
         let mut resolutions = Vec::new();
@@ -317,37 +341,6 @@ impl Stage {
         }
         found
     }
-}
-
-/// The verdict on a cell.
-enum CellVerdict {
-    /// There is no light apart from that of the lights themselves.
-    Empty,
-    /// Too little has been found.
-    Undecided,
-    /// The probability that equal means differ by as much, and one standard error of their difference as a fraction of
-    /// the light.
-    Decided { p: f64, error: f64 },
-}
-
-/// Judges two sets of pictures of a cell, in which `seen` is the light of the lights themselves. That one technique
-/// finds nothing at all counts only where it is `sure` to find something: it may just not have happened yet.
-fn judge(pair: [&[f64]; 2], seen: f64, sure: bool) -> CellVerdict {
-    let estimates = pair.map(estimate);
-    let light = estimates.map(|(mean, _)| mean).into_iter().fold(0.0, f64::max) - seen;
-    // The lights' edges are not the same in all pictures.
-    if light < 1e-2 * seen || light <= 0.0 {
-        return CellVerdict::Empty;
-    }
-    let is_unknown = |(values, (mean, variance)): (&[f64], (f64, f64))| {
-        let finds_nothing = mean - seen < 1e-2 * light;
-        variance.sqrt() > COARSE * light || is_skewed(values) || (finds_nothing && !sure)
-    };
-    let Some(p) = welch(pair[0], pair[1]) else { return CellVerdict::Empty };
-    if pair.into_iter().zip(estimates).any(is_unknown) {
-        return CellVerdict::Undecided;
-    }
-    CellVerdict::Decided { p, error: (estimates[0].1 + estimates[1].1).sqrt() / light }
 }
 
 /// The evidence of one technique's pictures.

@@ -6,6 +6,7 @@ pub mod bsdf_contract;
 pub mod camera_contract;
 pub mod chi_square;
 pub mod course_oracle;
+mod judging;
 pub mod light_contract;
 pub mod statistics;
 pub mod tally;

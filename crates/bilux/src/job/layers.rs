@@ -7,7 +7,7 @@ use bilux_math::parallel::table;
 use bilux_pictures::denoise::{DenoiserChoice, Layer, Noisy, Source, repainted};
 use bilux_pictures::{Picture, PictureError};
 use bilux_transport::aovs::Aov;
-use bilux_transport::{Film, push_variance};
+use bilux_transport::{Completion, Film, push_variance};
 use std::ops::Range;
 
 impl Outcome {
@@ -48,7 +48,15 @@ impl Outcome {
     /// # Errors
     /// If memory is short, or the denoiser fails.
     pub fn denoised(&self, chosen: &DenoiserChoice) -> Result<Picture, Error> {
-        let smooth = chosen.denoiser.denoise(self)?;
+        let smooth = match self.completion() {
+            Some(completion) => {
+                let coverage = self.model_coverage.as_ref().or(self.coverage.as_ref());
+                let coverage = coverage.map(|coverage| completion.means(coverage));
+                let smooth = chosen.denoiser.denoise(&Points { completion: &completion, coverage })?;
+                completion.completed(&smooth)?
+            }
+            None => chosen.denoiser.denoise(self)?,
+        };
         Ok(self.encoded(repainted(self.light()?, &smooth)))
     }
 }
@@ -91,6 +99,38 @@ impl Source for Outcome {
             normal,
             depth: features.map(|features| features.mean_depth[pixels.clone()].to_vec()),
             haze: features.and_then(|features| features.haze(coverage.is_some(), pixels)),
+        };
+        Ok(noisy.separated())
+    }
+}
+
+/// The points of a lattice from which a picture is completed, as a picture of their own.
+struct Points<'a> {
+    completion: &'a Completion<'a>,
+    coverage: Option<Vec<f32>>,
+}
+
+impl Source for Points<'_> {
+    fn size(&self) -> (usize, usize) {
+        let [width, height] = self.completion.size;
+        (width as usize, height as usize)
+    }
+
+    fn rows(&self, rows: Range<usize>) -> Result<Noisy, PictureError> {
+        let (width, _) = self.size();
+        let points = rows.start * width..rows.end * width;
+        let features = self.completion.of_points.as_ref();
+        let (albedo, normal) =
+            features.map(|features| features.guides(self.coverage.is_some(), points.clone())).unzip();
+        let noisy = Noisy {
+            width,
+            height: rows.len(),
+            layers: vec![Layer { colour: self.completion.light[points.clone()].to_vec(), variance: None }],
+            coverage: self.coverage.as_ref().map(|coverage| coverage[points.clone()].to_vec()),
+            albedo,
+            normal,
+            depth: features.map(|features| features.mean_depth[points.clone()].to_vec()),
+            haze: features.and_then(|features| features.haze(self.coverage.is_some(), points)),
         };
         Ok(noisy.separated())
     }

@@ -2,7 +2,8 @@
 
 use crate::Error;
 use bilux_pictures::Picture;
-use bilux_transport::{Features, Reached, Rendered};
+use bilux_pictures::denoise::repainted;
+use bilux_transport::{Completion, Features, Reached, Rendered};
 
 /// Features and labels of the visible surfaces, as far as asked for ([`layers`](crate::JobRequest::layers)).
 #[derive(Clone, Default)]
@@ -40,14 +41,28 @@ impl Outcome {
     /// interrupted.
     pub fn samples_per_pixel(&self) -> f64 {
         let film = &self.rendered.film;
+        if self.rendered.spacing.is_some() {
+            let samples: u64 = film.counts().iter().map(|count| u64::from(*count)).sum();
+            return samples as f64 / film.window().pixels() as f64;
+        }
         let pieces = film.coverage().pieces().iter();
         let samples = pieces.map(|(window, samples)| window.pixels() as u64 * samples.len() as u64);
         samples.sum::<u64>() as f64 / film.window().pixels() as f64
     }
 
+    /// Completion of a picture that time ended within its first pass, from the pixels that have a sample.
+    pub(crate) fn completion(&self) -> Option<Completion<'_>> {
+        let spacing = self.rendered.spacing?;
+        Some(Completion::new(&self.rendered.film, spacing, self.surfaces.features.as_ref()))
+    }
+
     /// The light in the film's window.
     pub(crate) fn light(&self) -> Result<Picture, Error> {
-        let mut picture = self.rendered.film.window_to_picture(self.rendered.film.window())?;
+        let film = &self.rendered.film;
+        let mut picture = film.window_to_picture(film.window())?;
+        if let Some(completion) = self.completion() {
+            picture = repainted(picture, &completion.completed(&completion.light)?);
+        }
         if let Some(coverage) = &self.coverage {
             picture.push_channel("A", coverage.clone())?;
         }

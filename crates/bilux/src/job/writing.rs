@@ -7,6 +7,7 @@ use crate::output::metadata::{ASKED, FINGERPRINT, IRRADIANCE, MEASURES, PIXEL_SH
 use crate::settings::{Background, Settings};
 use crate::{Error, Outcome};
 use bilux_pictures::{Picture, WriteOptions};
+use std::borrow::Cow;
 use std::path::Path;
 
 /// Largest relative difference from a square pixel that is a rounding.
@@ -68,7 +69,11 @@ impl Job {
     /// # Errors
     /// If memory is short.
     pub fn partial(&self, outcome: &Outcome) -> Result<Picture, Error> {
-        let mut picture = outcome.rendered.film.to_partial()?;
+        let mut film = Cow::Borrowed(&outcome.rendered.film);
+        if outcome.rendered.spacing.is_some() {
+            film.to_mut().keep_covered();
+        }
+        let mut picture = film.to_partial()?;
         if let Some(coverage) = &outcome.coverage {
             picture.push_channel("A", coverage.clone())?;
         }
@@ -101,8 +106,8 @@ impl Job {
                 note(PIXEL_SHAPE, format!("{:.4}", shape));
             }
         }
-        // What was interrupted cannot be made again.
-        if !outcome.rendered.cancelled {
+        // What was interrupted cannot be made again, nor what time ended within a pass.
+        if !outcome.rendered.cancelled && !outcome.rendered.cut_short {
             let reached = outcome.rendered.reached.map_or(self.settings().spp, |reached| reached.spp);
             note(SETTINGS, options(self.settings(), reached, denoiser));
         }

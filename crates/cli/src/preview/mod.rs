@@ -135,15 +135,20 @@ impl Preview {
         };
         for y in 0..height {
             for x in 0..width {
+                // The first samples may be spread, with others between that come later.
                 let (mut sum, mut count) = (Rgb::BLACK, 0.0);
                 for row in places(y, height, window.height) {
                     for column in places(x, width, window.width) {
-                        let light = film.pixel(window.x + column, window.y + row);
+                        let (column, row) = (window.x + column, window.y + row);
+                        if film.samples(column, row) == 0 {
+                            continue;
+                        }
+                        let light = film.pixel(column, row);
                         sum += if light.is_finite() { light } else { Rgb::BLACK };
                         count += 1.0;
                     }
                 }
-                pixels.push(sum * (1.0 / count));
+                pixels.push(sum * (1.0 / f32::max(count, 1.0)));
             }
         }
         Picture::from_rgb(width as usize, height as usize, pixels).ok()

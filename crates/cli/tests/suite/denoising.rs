@@ -281,3 +281,42 @@ fn the_background_is_what_was_asked_for() {
     let said = String::from_utf8(command.assert().code(1).get_output().stderr.clone()).unwrap();
     assert!(said.contains("builtin: cannot open it"), "{said}");
 }
+
+/// A room that takes seconds for a sample: the picture is complete, says how few it has, and a part of it is none of another picture.
+#[test]
+fn time_that_is_too_short_for_a_sample_gives_a_whole_picture() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path();
+    bilux(path, &["generate", "indirect", "-o", "room.toml"]);
+    let short = |output: &str, more: &[&str]| {
+        let always = ["render", "room.toml", "--size", "400x300", "--time-limit", "0.02", "-o", output];
+        bilux(path, &[&always, more].concat())
+    };
+    let said = short("a.png", &[]);
+    let words =
+        ["samples per pixel", "denoised by the built-in filter", "pixels without one are interpolated"];
+    assert!(words.iter().all(|words| said.contains(words)), "{said}");
+    let samples: f64 =
+        said.split("400x300, ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap().parse().unwrap();
+    assert!((0.01..0.9).contains(&samples), "{said}");
+    // Unlike the picture of as many seconds as it takes, it cannot be made again.
+    short("b.exr", &["--aov", "samples"]);
+    let picture = read(path.join("b.exr")).unwrap();
+    assert!(!picture.metadata.contains_key("bilux.settings"), "{:?}", picture.metadata.keys());
+    let light = picture.to_rgb().unwrap();
+    assert_eq!(light.len(), 400 * 300);
+    // A sample may find no light; pixels without one are not black for that.
+    let lit = light.iter().filter(|light| light.is_finite() && light.luminance() > 0.0).count();
+    assert!(lit > 9 * light.len() / 10, "{lit}");
+    let counts = picture.channel("samples.count").unwrap();
+    let on_lattice = |i: usize| (i % 400).is_multiple_of(8) && (i / 400).is_multiple_of(8);
+    assert!((0..counts.len()).filter(|i| on_lattice(*i)).all(|i| counts[i] == 1.0));
+    assert!(counts.contains(&0.0));
+    // The mean is that of the room.
+    bilux(path, &["render", "room.toml", "--size", "100x75", "--spp", "8", "-o", "c.exr"]);
+    let mean = |light: &[bilux::math::Rgb]| {
+        light.iter().map(|light| f64::from(light.luminance())).sum::<f64>() / light.len() as f64
+    };
+    let whole = mean(&read(path.join("c.exr")).unwrap().to_rgb().unwrap());
+    assert!((mean(&light) / whole - 1.0).abs() < 0.3, "{}, not {whole}", mean(&light));
+}

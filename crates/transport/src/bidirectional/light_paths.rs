@@ -234,7 +234,7 @@ impl<const N: usize> LightPaths<N> {
 
     /// The vertices of a sample's light subpath, in order.
     #[inline]
-    pub(crate) fn of(&self, sample: usize) -> impl Iterator<Item = &Vertex<N>> {
+    pub(crate) fn of(&self, sample: usize) -> impl Iterator<Item = &Vertex<N>> + Clone {
         let range = self.starts[sample] as usize..self.starts[sample + 1] as usize;
         self.order[range].iter().map(|&vertex| &self.vertices[vertex as usize])
     }

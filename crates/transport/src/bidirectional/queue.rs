@@ -136,7 +136,8 @@ mod tests {
         let rays = vcm.camera_rays(&scene, &*scene.cameras()[0].1, &settings);
         let (merging, window) = (vcm.merging().unwrap(), Window::whole(64, 48));
         let techniques = |counts: &MergeCounts| techniques(counts, !splats);
-        let (photons, _) = Photons::trace::<IterationSplats>(&rays, merging, &[window], 0, techniques, None);
+        let (photons, _) =
+            Photons::trace::<IterationSplats>(&rays, merging, &[window], 0, techniques, None, None);
         let both_ends = BothEnds::merging(&photons, splats, 4);
         let places: Vec<_> = (0..window.pixels()).map(|i| window.position(i)).collect();
         let mut tracer = Tracer::new(&scene, false);

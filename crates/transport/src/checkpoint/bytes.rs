@@ -6,6 +6,7 @@ use crate::film::error::FilmError;
 use crate::film::failures::PixelFailures;
 use crate::film::interval::Interval;
 use crate::film::limits::MAX_SIDE;
+use crate::film::window::Tiling;
 use crate::film::{Film, MAX_SAMPLES, zeroed};
 use crate::sampling::splats::Iterations;
 use crate::schedule::ScheduleMemory;
@@ -16,6 +17,9 @@ use std::time::Duration;
 
 /// First bytes of a checkpoint, with the version of its form.
 const MAGIC: &[u8; 12] = b"bilux pass 1";
+
+/// Beside the side of tiles: they are of lattices that are spread over the film.
+const SPREAD: u32 = 1 << 31;
 
 /// More passes are never open at a time, nor complete since the schedule has last looked.
 const MAX_PASSES: usize = 1 << 20;
@@ -77,7 +81,11 @@ impl Checkpoint {
 
 impl Begun {
     fn put(&self, bytes: &mut Vec<u8>) {
-        let lengths = [self.side, self.complete.len() as u32, self.open.len() as u32];
+        let side = match self.tiling {
+            Tiling::Squares(side) => side,
+            Tiling::Spread(side) => side | SPREAD,
+        };
+        let lengths = [side, self.complete.len() as u32, self.open.len() as u32];
         put_counts(bytes, &lengths);
         self.complete.iter().for_each(|samples| put_counts(bytes, &[samples.start, samples.end]));
         for OpenPass { samples, done, splats } in &self.open {
@@ -95,6 +103,9 @@ impl Begun {
 
     fn read(rest: &mut Rest, pixels: usize) -> Result<Begun, FilmError> {
         let [side, complete, open] = rest.numbers()?;
+        let is_spread = side & SPREAD > 0;
+        let side = side & !SPREAD;
+        let tiling = if is_spread { Tiling::Spread(side) } else { Tiling::Squares(side) };
         if !(1..=MAX_SIDE).contains(&side) || (complete as usize).max(open as usize) > MAX_PASSES {
             return Err(damaged("its passes are invalid"));
         }
@@ -121,7 +132,7 @@ impl Begun {
         }
         let [is_splatted] = rest.numbers()?;
         let splatted = (is_splatted == 1).then(|| read_failures(rest)).transpose()?;
-        Ok(Begun { side, complete, open: passes, splatted })
+        Ok(Begun { tiling, complete, open: passes, splatted })
     }
 }
 

@@ -10,7 +10,7 @@ mod bytes;
 use crate::film::error::RenderError;
 use crate::film::failures::PixelFailures;
 use crate::film::interval::Interval;
-use crate::film::window::Window;
+use crate::film::window::{TILE, Tiling, Window};
 use crate::film::{Film, MAX_SAMPLES};
 use crate::sampling::splats::Iterations;
 use crate::schedule::settings::RenderSettings;
@@ -45,6 +45,19 @@ pub struct Unobserved;
 
 impl Observer for Unobserved {}
 
+/// Sees the film of a render from which no other can go on, and keeps no checkpoint of it.
+pub(crate) struct Unkept<'a>(pub(crate) &'a dyn Observer);
+
+impl Observer for Unkept<'_> {
+    fn wants_film(&self) -> bool {
+        self.0.wants_film()
+    }
+
+    fn show(&self, film: &Film) {
+        self.0.show(film);
+    }
+}
+
 /// State of a render, from which a checkpoint is written ([`Standing::write`]).
 pub struct Standing<'a> {
     pub(crate) film: &'a Film,
@@ -71,10 +84,10 @@ pub struct Checkpoint {
 }
 
 /// The samples that are being taken.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Begun {
-    /// The side of the tiles, in pixels.
-    pub(crate) side: u32,
+    /// The tiles.
+    pub(crate) tiling: Tiling,
     /// Passes since the last look of the schedule that are complete.
     pub(crate) complete: Vec<Range<u32>>,
     /// The first passes that are not.
@@ -91,6 +104,12 @@ pub(crate) struct OpenPass {
     pub(crate) done: Vec<bool>,
     /// Splats of their light subpaths that the film does not have yet.
     pub(crate) splats: Option<Iterations>,
+}
+
+impl Default for Begun {
+    fn default() -> Begun {
+        Begun { tiling: Tiling::Squares(TILE), complete: Vec::new(), open: Vec::new(), splatted: None }
+    }
 }
 
 impl Begun {
@@ -162,7 +181,7 @@ impl Checkpoint {
         if next > settings.samples.end {
             return Err(RenderError::CheckpointBeyond { samples: next - first });
         }
-        let (tiles, pixels) = (sampled.tiles(self.begun.side.max(1)).len(), window.pixels());
+        let (tiles, pixels) = (sampled.divided(self.begun.tiling).len(), window.pixels());
         let fits = |splats: &Iterations| splats.sums.len() == pixels && are_within(&splats.failures, pixels);
         let open_fits = |pass: &OpenPass| pass.done.len() == tiles && pass.splats.as_ref().is_none_or(fits);
         let counts = self.film.counts.iter().chain(&self.film.iterations);

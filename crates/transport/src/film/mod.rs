@@ -297,6 +297,11 @@ impl Film {
         total
     }
 
+    /// The number of samples in the mean of each pixel of its window, row by row.
+    pub fn counts(&self) -> &[u32] {
+        &self.counts
+    }
+
     /// The number of samples in a pixel's mean.
     pub fn samples(&self, x: u32, y: u32) -> u32 {
         self.window.index(x, y).map_or(0, |index| self.counts[index])

@@ -94,6 +94,23 @@ impl Film {
         Ok(picture)
     }
 
+    /// Drops the samples of pixels that its coverage does not state, as a part has to that is merged with others.
+    pub fn keep_covered(&mut self) {
+        let mut is_covered = vec![false; self.window.pixels()];
+        for (window, _) in self.coverage.pieces() {
+            let pixels = (0..window.pixels()).map(|i| window.position(i));
+            for i in pixels.filter_map(|(x, y)| self.window.index(x, y)) {
+                is_covered[i] = true;
+            }
+        }
+        for (i, _) in is_covered.into_iter().enumerate().filter(|(_, is_covered)| !is_covered) {
+            (self.sums[i], self.counts[i]) = ([0; 3], 0);
+            if let Some(failures) = self.failures.get_mut(i) {
+                *failures = PixelFailures::default();
+            }
+        }
+    }
+
     /// The film that [`Film::to_partial`] was made from.
     ///
     /// # Errors

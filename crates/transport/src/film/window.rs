@@ -6,6 +6,54 @@ use std::ops::Range;
 /// Side of a tile, in pixels.
 pub(crate) const TILE: u32 = 16;
 
+/// Distances between the pixels of the lattices of a [`Tiling::Spread`], the coarsest first.
+pub(crate) const SPACINGS: [u32; 4] = [8, 4, 2, 1];
+
+/// Division of a window for a pass over its pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Tiling {
+    /// Square tiles with this side, row by row.
+    Squares(u32),
+    /// Lattices of pixels, each between those of the one before, so that those so far are spread evenly wherever the pass ends. A square of so many
+    /// pixels of a lattice by so many is a tile.
+    Spread(u32),
+}
+
+/// Some pixels of a window that are taken together: those whose column and row are multiples of `step`, but not both of `coarser`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Tile {
+    pub(crate) window: Window,
+    pub(crate) step: u32,
+    /// 0 where there is no coarser lattice.
+    pub(crate) coarser: u32,
+}
+
+impl Tile {
+    /// Columns and rows of its pixels, row by row.
+    pub(crate) fn positions(self) -> impl Iterator<Item = (u32, u32)> {
+        let Tile { window, step, coarser } = self;
+        let multiples = move |from: u32, to: u64| {
+            (from.next_multiple_of(step)..to.min(u64::from(u32::MAX)) as u32).step_by(step as usize)
+        };
+        let is_taken =
+            move |x: u32, y: u32| coarser > 0 && x.is_multiple_of(coarser) && y.is_multiple_of(coarser);
+        multiples(window.y, window.bottom())
+            .flat_map(move |y| multiples(window.x, window.right()).map(move |x| (x, y)))
+            .filter(move |&(x, y)| !is_taken(x, y))
+    }
+
+    /// Number of its pixels.
+    pub(crate) fn pixels(self) -> usize {
+        if self.step == 1 && self.coarser == 0 { self.window.pixels() } else { self.positions().count() }
+    }
+}
+
+/// The finest lattice that is complete, where these tiles of a [`Tiling::Spread`] are done: its spacing.
+pub(crate) fn finest_complete(tiles: &[Tile], done: &[bool]) -> Option<u32> {
+    let is_complete = |step: &u32| tiles.iter().zip(done).all(|(tile, done)| tile.step < *step || *done);
+    SPACINGS.into_iter().rev().find(is_complete)
+}
+
 /// A rectangle of pixels, in the coordinates of the whole film.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Window {
@@ -88,6 +136,21 @@ impl Window {
     pub fn position(&self, index: usize) -> (u32, u32) {
         let width = self.width as usize;
         (self.x + (index % width) as u32, self.y + (index / width) as u32)
+    }
+
+    /// The tiles of a pass over the window, in their order.
+    pub(crate) fn divided(&self, tiling: Tiling) -> Vec<Tile> {
+        let of_lattice = |(side, step, coarser): (u32, u32, u32)| {
+            let tile = move |window| Tile { window, step, coarser };
+            self.tiles(side.saturating_mul(step)).into_iter().map(tile)
+        };
+        match tiling {
+            Tiling::Squares(side) => of_lattice((side, 1, 0)).collect(),
+            Tiling::Spread(side) => {
+                let coarser = std::iter::once(0).chain(SPACINGS);
+                SPACINGS.into_iter().zip(coarser).flat_map(|(step, c)| of_lattice((side, step, c))).collect()
+            }
+        }
     }
 
     /// Square tiles with this side length that cover the window, row by row.
@@ -209,6 +272,33 @@ mod tests {
             }
         }
         assert!(seen.iter().all(|&n| n == 1));
+    }
+
+    /// Every pixel once, and of each lattice those in between that the coarser ones left out.
+    #[test]
+    fn lattices_take_every_pixel_once_and_are_spread_evenly() {
+        let window = Window { x: 3, y: 5, width: 37, height: 18 };
+        let tiles = window.divided(Tiling::Spread(2));
+        let mut seen = vec![0; window.pixels()];
+        for tile in &tiles {
+            assert_eq!(tile.positions().count(), tile.pixels());
+            for (x, y) in tile.positions() {
+                seen[window.index(x, y).unwrap()] += 1;
+            }
+        }
+        assert!(seen.iter().all(|&n| n == 1));
+        assert!(tiles.is_sorted_by_key(|tile| std::cmp::Reverse(tile.step)));
+        // With all tiles of 8 and of 4 done, and one of 2.
+        let first = tiles.iter().position(|tile| tile.step == 2).unwrap();
+        let done: Vec<bool> = (0..tiles.len()).map(|i| i <= first).collect();
+        assert_eq!(finest_complete(&tiles, &done), Some(4));
+        assert_eq!(finest_complete(&tiles, &vec![true; tiles.len()]), Some(1));
+        assert_eq!(finest_complete(&tiles, &vec![false; tiles.len()]), None);
+        let of_four = tiles[..first].iter().flat_map(|tile| tile.positions());
+        let mut of_four: Vec<(u32, u32)> = of_four.collect();
+        of_four.sort_unstable();
+        let wanted = (4..40).step_by(4).flat_map(|x| (8..23).step_by(4).map(move |y| (x, y)));
+        assert_eq!(of_four, wanted.collect::<Vec<_>>());
     }
 
     #[test]

@@ -189,4 +189,6 @@ pub struct Plan {
     pub choice: Choice,
     /// The work of the rays that led to it.
     pub counters: Counters,
+    /// Whether a limit of time ended the pilot before all of its samples.
+    pub is_hurried: bool,
 }

@@ -14,7 +14,7 @@
 
 use crate::film::error::{FilmError, RenderError};
 use crate::film::failures::SamplePlace;
-use crate::film::window::{TILE, Window};
+use crate::film::window::{TILE, Tile, Tiling, Window, finest_complete};
 use crate::film::zeroed;
 use crate::integrators::pixel_integrator::PixelIntegrator;
 use crate::labels::visible_normal;
@@ -29,6 +29,7 @@ use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_pictures::Picture;
 use bilux_scene::{Camera, ClassicMaterial, Ray, Scene, Surface, Tracer, TransportMode, Wavelength};
 use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Camera rays per pixel, even where the picture has fewer samples: they show denoisers which mixture of surfaces an
@@ -68,8 +69,8 @@ struct Sums {
     haze: f32,
 }
 
-/// Evaluates the first [`FEATURE_SAMPLES`] samples of each pixel, and no more than fit into `time` if that is given.
-/// `None` when it was cancelled.
+/// Evaluates the first [`FEATURE_SAMPLES`] samples of each pixel, and no more than fit into `time` if that is given: those that the first does
+/// not reach in twice that time get the features of a pixel beside them. `None` when it was cancelled.
 ///
 /// # Errors
 /// When the size or the crop is invalid, or there is not enough memory or no threads.
@@ -84,21 +85,37 @@ pub fn features(
     settings.check()?;
     let (window, begun) = (settings.window(), Instant::now());
     let eye = integrator.camera_rays(scene, camera, settings);
-    let empty = |tile: Window| Ok((tile, zeroed::<Sums>(tile.pixels())?));
-    let mut tiles = window.tiles(TILE).into_iter().map(empty).collect::<Result<Vec<_>, FilmError>>()?;
+    let empty = |tile: Tile| Ok((tile, zeroed::<Sums>(tile.pixels())?));
+    let tiling = if time.is_some() { Tiling::Spread(TILE) } else { Tiling::Squares(TILE) };
+    let mut tiles = window.divided(tiling).into_iter().map(empty).collect::<Result<Vec<_>, FilmError>>()?;
+    let coarsest = tiles.first().map_or(1, |(tile, _)| tile.step);
+    let least = tiles.iter().filter(|(tile, _)| tile.step == coarsest).count();
     let pool = threads(settings)?;
     let samples = if integrator.is_random() { FEATURE_SAMPLES } else { settings.spp.min(FEATURE_SAMPLES) };
     let mut done = 0;
     while done < samples {
-        let each = |(tile, sums): &mut (Window, Vec<Sums>)| {
-            if !progress.is_cancelled() {
+        // The first sample is worth more than others: it guides what completes a picture that time ends within its own first one.
+        let is_over = || time.is_some_and(|time| begun.elapsed() > 2 * time);
+        let is_late = |i: usize| done == 0 && i >= least && is_over();
+        let left_out = Mutex::new(tiles.len());
+        let each = |(i, (tile, sums)): (usize, &mut (Tile, Vec<Sums>))| {
+            if is_late(i) {
+                let mut first = left_out.lock().unwrap_or_else(PoisonError::into_inner);
+                *first = i.min(*first);
+            } else if !progress.is_cancelled() {
                 look(&eye, tile, sums, done);
             }
         };
-        install(&pool, || for_each(&mut tiles, each));
+        install(&pool, || for_each(tiles.iter_mut().enumerate(), each));
         done += 1;
         if progress.is_cancelled() {
             return Ok(None);
+        }
+        let left_out = left_out.into_inner().unwrap_or_else(PoisonError::into_inner);
+        if left_out < tiles.len() {
+            let is_done: Vec<bool> = (0..tiles.len()).map(|i| i < left_out).collect();
+            take_from_lattice(&mut tiles, &is_done, window)?;
+            break;
         }
         if time.is_some_and(|time| begun.elapsed() * (done + 1) > time * done) {
             break;
@@ -106,6 +123,29 @@ pub fn features(
     }
     let has_haze = scene.scatters() || scene.has_interfaces();
     Features::of(window, tiles, done, has_haze).map(Some)
+}
+
+/// Gives the pixels that are not looked at the sums of the point before them, to the left and above, of the finest complete lattice.
+fn take_from_lattice(
+    tiles: &mut [(Tile, Vec<Sums>)],
+    done: &[bool],
+    window: Window,
+) -> Result<(), FilmError> {
+    let all: Vec<Tile> = tiles.iter().map(|(tile, _)| *tile).collect();
+    let Some(spacing) = finest_complete(&all, done) else { return Ok(()) };
+    let mut known = zeroed::<Sums>(window.pixels())?;
+    for ((tile, sums), _) in tiles.iter().zip(done).filter(|(_, is_done)| **is_done) {
+        for ((x, y), sum) in tile.positions().zip(sums) {
+            window.index(x, y).into_iter().for_each(|i| known[i] = *sum);
+        }
+    }
+    for ((tile, sums), _) in tiles.iter_mut().zip(done).filter(|(_, is_done)| !**is_done) {
+        for ((x, y), sum) in tile.positions().zip(sums) {
+            let [x, y] = [x, y].map(|at| at / spacing * spacing);
+            *sum = window.index(x, y).map_or(*sum, |i| known[i]);
+        }
+    }
+    Ok(())
 }
 
 /// The fraction of each pixel that is covered, 0..=1, in rows of the film's window, the top row first: the mean over its first
@@ -160,10 +200,10 @@ fn camera_rays(eye: &CameraRays, places: &[SamplePlace]) -> Vec<Ray> {
 }
 
 /// Adds one sample to each pixel of a tile.
-fn look(eye: &CameraRays, tile: &Window, sums: &mut [Sums], sample: u32) {
+fn look(eye: &CameraRays, tile: &Tile, sums: &mut [Sums], sample: u32) {
     let mut tracer = Tracer::new(eye.context.scene, false);
     let place = |(x, y): (u32, u32)| SamplePlace { x, y, sample };
-    let places: Vec<SamplePlace> = (0..sums.len()).map(|i| place(tile.position(i))).collect();
+    let places: Vec<SamplePlace> = tile.positions().map(place).collect();
     let rays = camera_rays(eye, &places);
     let mut hits = vec![None; rays.len()];
     tracer.hits(&rays, &mut hits);
@@ -244,7 +284,7 @@ fn albedo(classic: &ClassicMaterial, glows: Rgb) -> Rgb {
 impl Features {
     fn of(
         window: Window,
-        tiles: Vec<(Window, Vec<Sums>)>,
+        tiles: Vec<(Tile, Vec<Sums>)>,
         samples: u32,
         has_haze: bool,
     ) -> Result<Features, RenderError> {
@@ -258,8 +298,7 @@ impl Features {
             coverage: zeroed(pixels)?,
         };
         for (tile, sums) in tiles {
-            for (i, sum) in sums.iter().enumerate() {
-                let (x, y) = tile.position(i);
+            for ((x, y), sum) in tile.positions().zip(&sums) {
                 let Some(at) = window.index(x, y) else { continue };
                 (all.albedo[at], all.mean_normal[at]) = (sum.albedo * share, sum.normal * share);
                 all.mean_depth[at] = if sum.seen > 0.0 { sum.depth / sum.seen } else { f32::INFINITY };

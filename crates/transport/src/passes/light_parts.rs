@@ -158,7 +158,7 @@ impl<'a> Sums<'a> {
         }
         let techniques = |counts: &_| merging.techniques(counts);
         let visitor = splats.then_some(self);
-        Ok(Some(Photons::trace(eye, merging, tiles, iteration, techniques, visitor).0))
+        Ok(Some(Photons::trace(eye, merging, tiles, iteration, techniques, visitor, None).0))
     }
 
     fn make_room_for_splats(&self) -> Result<(), FilmError> {

@@ -1,9 +1,11 @@
 //! Passes over the film: all its tiles, some samples of each pixel, on all threads.
 
+pub(crate) mod completion;
 pub(crate) mod features;
 pub(crate) mod illumination;
 pub(crate) mod layers;
 pub(crate) mod light_parts;
+mod limit;
 pub mod mattes;
 pub(crate) mod photon_tracing;
 pub(crate) mod receiving;
@@ -16,9 +18,10 @@ pub(crate) mod work;
 use crate::checkpoint::{Begun, Observer, OpenPass};
 use crate::film::error::{FilmError, RenderError};
 use crate::film::failures::SamplePlace;
-use crate::film::window::{Coverage, Window};
+use crate::film::window::{Coverage, Tile, Tiling, Window, finest_complete};
 use crate::film::{Film, scale_exponent};
 use crate::integrators::pixel_integrator::PixelIntegrator;
+use crate::passes::limit::{Limit, Limited};
 use crate::sampling::camera_rays::CameraRays;
 use crate::sampling::sample_queue::{SampleQueue, SampleSink};
 use crate::sampling::splats::{Iterations, Splats};
@@ -33,6 +36,7 @@ use std::collections::{BTreeMap, HashSet};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
 
 /// Maximum number of samples of each pixel in one pass over the film.
 const PASS: u32 = 32;
@@ -48,16 +52,17 @@ pub(crate) struct Followers<'a> {
 
 /// Passes over all tiles, of which some jobs may be done.
 pub(crate) struct Passes {
-    /// The side of the tiles, in pixels.
-    pub(crate) side: u32,
+    pub(crate) tiling: Tiling,
     pub(crate) ranges: Vec<OpenPass>,
+    /// When time ends them, wherever they are: but where pixels are spread, not before the coarsest lattice is complete.
+    pub(crate) deadline: Option<Instant>,
 }
 
 impl Passes {
     /// The passes that take these samples, none of which is begun.
-    pub(crate) fn of(samples: &Range<u32>, side: u32) -> Passes {
+    pub(crate) fn of(samples: &Range<u32>, tiling: Tiling, deadline: Option<Instant>) -> Passes {
         let open = |samples| OpenPass { samples, done: Vec::new(), splats: None };
-        Passes { side, ranges: passes(samples).into_iter().map(open).collect() }
+        Passes { tiling, ranges: passes(samples).into_iter().map(open).collect(), deadline }
     }
 }
 
@@ -78,7 +83,7 @@ pub(crate) fn all_passes(
         if let Some(error) = work.failed.lock().unwrap_or_else(PoisonError::into_inner).take() {
             return Err(error.into());
         }
-        if work.is_complete() {
+        if work.is_complete() || work.is_late() {
             break;
         }
         work.keep(counters);
@@ -87,8 +92,8 @@ pub(crate) fn all_passes(
         }
         *work.is_paused.get_mut() = false;
     }
-    let (film, cancelled) = work.finish();
-    Ok(Rendered { film, counters, cancelled, choice, reached, interval, batch_means })
+    let End { film, cancelled, cut_short, spacing } = work.finish()?;
+    Ok(Rendered { film, counters, cancelled, cut_short, spacing, choice, reached, interval, batch_means })
 }
 
 /// Ranges of samples that double in length, so that a first picture appears soon.
@@ -107,12 +112,13 @@ struct Work<'a> {
     integrator: &'a dyn PixelIntegrator,
     eye: CameraRays<'a>,
     followers: Followers<'a>,
-    side: u32,
-    tiles: Vec<Window>,
+    tiling: Tiling,
+    tiles: Vec<Tile>,
     passes: Vec<Range<u32>>,
     /// Jobs that were done before.
     done: HashSet<u64>,
     next: AtomicU64,
+    limit: Option<Limit>,
     /// Whether a checkpoint is due: no thread begins a job.
     is_paused: AtomicBool,
     /// Jobs that were started but not finished.
@@ -124,13 +130,19 @@ struct Work<'a> {
     failed: Mutex<Option<FilmError>>,
 }
 
+/// State of a render's work at its end.
+struct End {
+    film: Film,
+    cancelled: bool,
+    cut_short: bool,
+    spacing: Option<u32>,
+}
+
 /// Some samples of each pixel of a tile.
-fn places(tile: Window, samples: &Range<u32>) -> Vec<SamplePlace> {
-    let mut all = Vec::with_capacity(tile.width as usize * tile.height as usize * samples.len());
-    for y in tile.y..tile.y + tile.height {
-        for x in tile.x..tile.x + tile.width {
-            all.extend(samples.clone().map(|sample| SamplePlace { x, y, sample }));
-        }
+fn places(tile: Tile, samples: &Range<u32>) -> Vec<SamplePlace> {
+    let mut all = Vec::with_capacity(tile.pixels() * samples.len());
+    for (x, y) in tile.positions() {
+        all.extend(samples.clone().map(|sample| SamplePlace { x, y, sample }));
     }
     all
 }
@@ -167,11 +179,11 @@ impl<'a> Work<'a> {
         integrator: &'a dyn PixelIntegrator,
         eye: CameraRays<'a>,
         sampled: Window,
-        Passes { side, ranges }: Passes,
+        Passes { tiling, ranges, deadline }: Passes,
         followers: Followers<'a>,
         film: Film,
     ) -> Work<'a> {
-        let tiles = sampled.tiles(side);
+        let tiles = sampled.divided(tiling);
         let (mut done, mut iterations) = (HashSet::new(), BTreeMap::new());
         let mut passes = Vec::with_capacity(ranges.len());
         for (pass, open) in ranges.into_iter().enumerate() {
@@ -180,11 +192,14 @@ impl<'a> Work<'a> {
             iterations.extend(open.splats.map(|splats| (pass, splats)));
             passes.push(open.samples);
         }
+        let coarsest = tiles.first().map_or(1, |tile| tile.step);
+        let least = tiles.iter().filter(|tile| tile.step == coarsest && coarsest > 1).count() as u64;
         Work {
             integrator,
             eye,
             followers,
-            side,
+            tiling,
+            limit: deadline.map(|at| Limit::new(at, least)),
             tiles,
             passes,
             done,
@@ -215,6 +230,10 @@ impl<'a> Work<'a> {
             if job >= self.jobs() {
                 return None;
             }
+            if self.limit.as_ref().is_some_and(|limit| limit.is_over_for(job)) {
+                self.drop_job(job);
+                return None;
+            }
             if !self.done.contains(&job) {
                 return Some(job);
             }
@@ -233,11 +252,12 @@ impl<'a> Work<'a> {
             let tile = self.tiles[job as usize % self.tiles.len()];
             let pass = job as usize / self.tiles.len();
             let samples = self.passes[pass].clone();
-            part.restart(tile.intersection(&self.eye.settings.window()));
+            part.restart(tile.window.intersection(&self.eye.settings.window()));
             let rays_before = tracer.counters.rays;
-            let mut sink = SampleSink::new(&mut part, &mut splats, self.followers.progress);
+            let limited = Limited { progress: self.followers.progress, limit: self.limit.as_ref(), job };
+            let mut sink = SampleSink::new(&mut part, &mut splats, &limited);
             if !queue.take(&self.eye, &mut tracer, &places(tile, &samples), &mut sink) {
-                self.dropped.lock().unwrap_or_else(PoisonError::into_inner).push(job);
+                self.drop_job(job);
                 return tracer.counters;
             }
             self.add(&part);
@@ -247,10 +267,14 @@ impl<'a> Work<'a> {
                 *self.failed.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
                 return tracer.counters;
             }
-            let taken = tile.pixels() as u64 * samples.len() as u64;
+            let taken = (tile.pixels() * samples.len()) as u64;
             self.followers.progress.advance(taken, tracer.counters.rays - rays_before);
         }
         tracer.counters
+    }
+
+    fn drop_job(&self, job: u64) {
+        self.dropped.lock().unwrap_or_else(PoisonError::into_inner).push(job);
     }
 
     /// Adds the samples of a job to the film, and shows it.
@@ -300,7 +324,7 @@ impl<'a> Work<'a> {
     /// Has a checkpoint kept.
     fn keep(&mut self, counters: Counters) {
         let last = (0..self.passes.len()).rev().find(|&pass| self.tiles_done(pass).contains(&true));
-        let mut begun = Begun { side: self.side, ..Begun::default() };
+        let mut begun = Begun { tiling: self.tiling, ..Begun::default() };
         for pass in 0..=last.unwrap_or(0) {
             let (samples, done) = (self.passes[pass].clone(), self.tiles_done(pass));
             if done.contains(&false) {
@@ -314,11 +338,21 @@ impl<'a> Work<'a> {
         (self.followers.keep)(film, begun, counters);
     }
 
-    /// The film with its coverage, and whether anything is missing.
-    fn finish(mut self) -> (Film, bool) {
+    /// Whether time is up.
+    fn is_late(&self) -> bool {
+        self.limit.as_ref().is_some_and(Limit::is_late)
+    }
+
+    /// The film with its coverage.
+    fn finish(mut self) -> Result<End, FilmError> {
         let is_complete = self.is_complete();
+        let cut_short = !is_complete && self.is_late() && !self.followers.progress.is_cancelled();
         let window = self.eye.settings.window();
-        let mut covered = Coverage::default();
+        let (mut covered, mut spacing) = (Coverage::default(), None);
+        let of_first = self.tiles_done(0);
+        let of_first = self.tiles.iter().zip(of_first);
+        let taken = of_first.filter(|(_, is_done)| *is_done).map(|(tile, _)| tile.pixels()).sum::<usize>();
+        let sampled = self.tiles.iter().map(|tile| tile.pixels()).sum::<usize>();
         for pass in 0..self.passes.len() {
             let samples = self.passes[pass].clone();
             if is_complete {
@@ -330,12 +364,25 @@ impl<'a> Work<'a> {
                 covered.insert(window, samples);
                 continue;
             }
-            for (tile, _) in self.tiles.iter().zip(done).filter(|(_, is_done)| *is_done) {
-                covered.insert(tile.intersection(&window), samples.clone());
+            let is_spread = matches!(self.tiling, Tiling::Spread(_));
+            let finest = if is_spread { finest_complete(&self.tiles, &done) } else { Some(1) };
+            spacing = spacing.or(finest.filter(|_| is_spread));
+            // Only where the finest of all lattices is being taken are there windows of which all pixels have their sample.
+            let is_whole = |tile: &Tile| tile.step == 1 && finest.is_some_and(|finest| finest <= 2);
+            for (tile, _) in self.tiles.iter().zip(done).filter(|(tile, is_done)| *is_done && is_whole(tile))
+            {
+                covered.insert(tile.window.intersection(&window), samples.clone());
             }
         }
         let mut film = self.film.into_inner().unwrap_or_else(PoisonError::into_inner);
         film.coverage.extend(&covered);
-        (film, !is_complete)
+        let begun = self.iterations.into_inner().unwrap_or_else(PoisonError::into_inner).remove(&0);
+        if let Some(splats) = begun.filter(|_| cut_short && film.iterations.iter().all(|count| *count == 0)) {
+            film.add_part_of_iteration(splats, [taken, sampled])?;
+        }
+        if spacing.is_none() && !is_complete && matches!(self.tiling, Tiling::Spread(_)) {
+            film.keep_covered();
+        }
+        Ok(End { film, cancelled: !is_complete && !cut_short, cut_short, spacing })
     }
 }

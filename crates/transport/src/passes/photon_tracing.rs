@@ -11,6 +11,10 @@ use crate::techniques::{Contribution, LightPathVisitor, PerSet, Tally, Technique
 use bilux_math::parallel::map;
 use bilux_scene::{Counters, Scene, Tracer};
 use std::ops::Range;
+use std::time::Instant;
+
+/// One in this many of the tiles of light subpaths is traced even where time is up.
+const LEAST: usize = 64;
 
 /// The samples that can be taken together: where subpaths are merged, one of each pixel, since each iteration has photons of
 /// its own; otherwise all of them.
@@ -55,6 +59,10 @@ impl Followed {
         is_nth(at, self.width, self.step)
     }
 
+    fn count_in(&self, tile: &Window) -> usize {
+        (0..tile.pixels()).filter(|&i| self.is_traced(tile.position(i))).count()
+    }
+
     fn has_beams(&self, at: (u32, u32)) -> bool {
         is_nth(at, self.width, self.beam_step)
     }
@@ -71,17 +79,43 @@ fn is_nth((x, y): (u32, u32), width: u64, step: u64) -> bool {
 
 impl Photons {
     /// The photons of an iteration, where the integrator merges subpaths, and the work that they took. What the camera sees of
-    /// their light subpaths goes to `splats`.
+    /// their light subpaths goes to `splats`. If a `deadline` ends it early, the light subpaths so far stand for all.
     pub(crate) fn of_iteration(
         integrator: &dyn PixelIntegrator,
         rays: &CameraRays,
         tiles: &[Window],
         iteration: u32,
         splats: Option<&IterationSplats>,
+        deadline: Option<Instant>,
     ) -> Option<(Photons, Counters)> {
         let merging = integrator.merging()?;
         let techniques = |counts: &MergeCounts| merging.techniques(counts);
-        Some(Photons::trace(rays, merging, tiles, iteration, techniques, splats))
+        Some(Photons::trace(rays, merging, tiles, iteration, techniques, splats, deadline))
+    }
+}
+
+impl<const N: usize> TracedPhotons<N> {
+    /// Keeps the photons of a light subpath: on surfaces, and those in media if it is one `with_points`.
+    fn keep<'v>(
+        &mut self,
+        vertices: impl Iterator<Item = &'v Vertex<N>> + Clone,
+        scene: &Scene,
+        channel: u8,
+        techniques: &TechniqueCounts<N>,
+        with_points: bool,
+    ) {
+        let is_kept = |vertex: &&Vertex<N>| vertex.depth > 0 || techniques.direct;
+        self.surfaces.extend(vertices.clone().filter(is_kept).filter_map(Vertex::photon));
+        if scene.has_coloured_distances() {
+            let is_kept = |vertex: &&Vertex<N>| !vertex.at.is_in_medium() && is_kept(vertex);
+            let walk = |vertex: &Vertex<N>| PhotonWalk { odds: vertex.odds, channel };
+            self.walks.extend(vertices.clone().filter(is_kept).map(walk));
+        }
+        if with_points {
+            let is_kept = |vertex: &&Vertex<N>| vertex.depth > 0 || vertex.at.direct_light(techniques).merges;
+            let point = |vertex: &Vertex<N>| vertex.medium_photon(scene, channel);
+            self.points.extend(vertices.filter(is_kept).filter_map(point));
+        }
     }
 }
 
@@ -89,7 +123,8 @@ impl<const N: usize> Photons<N> {
     /// Traces the light subpaths of an iteration, one per pixel, or every `n`th if there would be too many.
     ///
     /// Also returns the number of rays that this took. `techniques` gives all techniques, given how often subpaths are
-    /// merged. Connections with the camera go to the `visitor`.
+    /// merged. Connections with the camera go to the `visitor`. After a `deadline` no more of them are begun than a few, and the throughput of those so
+    /// far is scaled up ([`Photons::part`]): weights stay as they would be with all, and so do expected values.
     pub(crate) fn trace<O: LightPathVisitor<N>>(
         eye: &CameraRays,
         merging: &Merging,
@@ -97,6 +132,7 @@ impl<const N: usize> Photons<N> {
         iteration: u32,
         techniques: impl FnOnce(&MergeCounts) -> TechniqueCounts<N>,
         visitor: Option<&O>,
+        deadline: Option<Instant>,
     ) -> (Photons<N>, Counters) {
         let scene = eye.context.scene;
         let followed = Followed::of(scene, merging, tiles, iteration);
@@ -107,6 +143,9 @@ impl<const N: usize> Photons<N> {
         let of_tile = |(index, tile): (usize, &Window)| {
             let mut tracer = Tracer::new(scene, eye.settings.count_work);
             let mut traced = TracedPhotons::NONE;
+            if index > tiles.len() / LEAST && deadline.is_some_and(|deadline| Instant::now() >= deadline) {
+                return (traced, tracer.counters, 0);
+            }
             let mut tally = visitor.map(O::tally);
             let places: Vec<(u32, u32)> = (0..tile.pixels())
                 .map(|i| tile.position(i))
@@ -132,36 +171,31 @@ impl<const N: usize> Photons<N> {
                     };
                     paths.connect_to_camera(&mut samples, context, &mut tracer, &techniques, add);
                 }
-                let is_coloured = scene.has_coloured_distances();
                 let has_points = |at| techniques.points != PerSet::ZERO && followed.has_points(at);
                 for (i, sample) in samples.iter().enumerate() {
-                    let channel = sample.state.channel;
-                    let is_kept = |vertex: &&Vertex<N>| vertex.depth > 0 || techniques.direct;
-                    traced.surfaces.extend(paths.of(i).filter(is_kept).filter_map(Vertex::photon));
-                    if is_coloured {
-                        let is_kept = |vertex: &&Vertex<N>| !vertex.at.is_in_medium() && is_kept(vertex);
-                        let walk = |vertex: &Vertex<N>| PhotonWalk { odds: vertex.odds, channel };
-                        traced.walks.extend(paths.of(i).filter(is_kept).map(walk));
-                    }
-                    if has_points(places[i]) {
-                        let is_kept = |vertex: &&Vertex<N>| {
-                            vertex.depth > 0 || vertex.at.direct_light(&techniques).merges
-                        };
-                        let point = |vertex: &Vertex<N>| vertex.medium_photon(scene, channel);
-                        traced.points.extend(paths.of(i).filter(is_kept).filter_map(point));
-                    }
+                    let (channel, with_points) = (sample.state.channel, has_points(places[i]));
+                    traced.keep(paths.of(i), scene, channel, &techniques, with_points);
                 }
             }
             if let (Some(visitor), Some(tally)) = (visitor, tally) {
                 visitor.take(index, tally);
             }
-            (traced, tracer.counters)
+            (traced, tracer.counters, places.len())
         };
         let (mut all, mut counted) = (TracedPhotons::NONE, Counters::default());
-        for (part, counters) in map(tiles.iter().enumerate(), of_tile) {
+        let mut count = 0;
+        for (part, counters, paths) in map(tiles.iter().enumerate(), of_tile) {
             all.append(part);
             counted += counters;
+            count += paths;
         }
-        (Photons::new(all, radius, techniques), counted)
+        let wanted = tiles.iter().map(|tile| followed.count_in(tile)).sum::<usize>();
+        let part = (count < wanted).then_some([count, wanted]);
+        if part.is_some() {
+            all.scale(wanted as f32 / count.max(1) as f32);
+        }
+        let mut photons = Photons::new(all, radius, techniques);
+        photons.part = part;
+        (photons, counted)
     }
 }

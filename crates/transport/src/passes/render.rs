@@ -1,10 +1,10 @@
 //! The tile loop: every sample of every pixel, on all cores, into one film.
 
-use crate::checkpoint::{Begun, Checkpoint, Observer, Standing, Unobserved};
+use crate::checkpoint::{Begun, Checkpoint, Observer, Standing, Unkept, Unobserved};
 use crate::film::error::RenderError;
 use crate::film::failures::PixelFailures;
 use crate::film::interval::Interval;
-use crate::film::window::{TILE, Window};
+use crate::film::window::{TILE, Tiling, Window};
 use crate::film::{Film, scale_exponent};
 use crate::integrators::pixel_integrator::{PixelIntegrator, Plan};
 use crate::passes::photon_tracing::iterations;
@@ -15,7 +15,7 @@ use crate::sampling::splats::IterationSplats;
 use crate::schedule::Schedule;
 use crate::schedule::progress::Progress;
 use crate::schedule::rendered::Rendered;
-use crate::schedule::settings::{RenderSettings, threads};
+use crate::schedule::settings::{RenderSettings, Stop, threads};
 use bilux_accel::Counters;
 use bilux_math::parallel::{ThreadPool, install};
 use bilux_scene::{Camera, Scene};
@@ -90,9 +90,14 @@ pub fn render_from(
     let scale = scale_exponent(scene);
     let film = Film::windowed(settings.width, settings.height, settings.window(), scale)?;
     let pool = threads(settings)?;
-    let plan = install(&pool, || integrator.plan(scene, camera, &settings.for_planning()));
+    let stop = if from.is_none() { settings.stop } else { Stop::default() };
+    let film_of_plan = RenderSettings { stop, ..settings.for_planning() };
+    let plan = install(&pool, || integrator.plan(scene, camera, &film_of_plan));
+    // A render that went on from here would choose with all of a pilot's samples.
+    let unkept = Unkept(observer);
+    let observer = if plan.as_ref().is_some_and(|plan| plan.is_hurried) { &unkept } else { observer };
     let (choice, planned, counters) = match plan {
-        Some(Plan { choice, integrator, counters }) => (Some(choice), Some(integrator), counters),
+        Some(Plan { choice, integrator, counters, .. }) => (Some(choice), Some(integrator), counters),
         None => (None, None, Counters::default()),
     };
     let integrator = planned.as_deref().unwrap_or(integrator);
@@ -110,8 +115,17 @@ pub fn render_from(
     }
     progress.begin(settings.sample_count(integrator));
     let interval = settings.interval.then(|| Interval::new(settings.window())).transpose()?;
-    let empty =
-        Rendered { film, counters, cancelled: false, choice, reached: None, interval, batch_means: None };
+    let empty = Rendered {
+        film,
+        counters,
+        cancelled: false,
+        cut_short: false,
+        spacing: None,
+        choice,
+        reached: None,
+        interval,
+        batch_means: None,
+    };
     let run = Run { scene, camera, integrator, settings, progress, observer, pool, scale };
     run.take_all(from, empty, begun)
 }
@@ -183,6 +197,10 @@ impl<'a> Run<'a> {
             } else {
                 self.take(&samples, open.map(|(open, _)| open), rendered, &place)?
             };
+            if rendered.cut_short {
+                schedule.cut_short();
+                break;
+            }
             if !rendered.cancelled {
                 schedule.look(&rendered.film, &samples);
                 if let Some(expected) = schedule.expected() {
@@ -205,22 +223,28 @@ impl<'a> Run<'a> {
         let window = self.settings.sampled_window(self.integrator);
         let large = MANY_TILES * self.pool.current_num_threads() * (LARGE_TILE * LARGE_TILE) as usize;
         let side = if window.pixels() >= large { LARGE_TILE } else { TILE };
+        // Replicates have whole samples.
+        let deadline = place.schedule.deadline().filter(|_| !self.settings.interval);
+        let is_first = samples.start == self.settings.samples.start;
+        let tiling =
+            if deadline.is_some() && is_first { Tiling::Spread(side) } else { Tiling::Squares(side) };
         let mut rest = samples.clone();
-        if let Some(Begun { side, complete, open, splatted }) = begun {
+        if let Some(Begun { tiling, complete, open, splatted }) = begun {
             let all = open.iter().map(|pass| &pass.samples).chain(&complete);
             rest.start = all.map(|samples| samples.end).max().unwrap_or(rest.start);
             complete.into_iter().for_each(|done| rendered.film.cover(self.settings.window(), done));
             if let Some(first) = open.first() {
                 let iteration = first.samples.start;
-                let passes = Passes { side, ranges: open };
+                // What was begun is completed, whatever time it is.
+                let passes = Passes { tiling, ranges: open, deadline: None };
                 rendered = self.take_passes(iteration, passes, splatted, rendered, place)?;
             }
         }
         for samples in iterations(self.integrator, &rest) {
-            if rendered.cancelled {
+            if rendered.cancelled || rendered.cut_short {
                 break;
             }
-            let passes = Passes::of(&samples, side);
+            let passes = Passes::of(&samples, tiling, deadline);
             rendered = self.take_passes(samples.start, passes, None, rendered, place)?;
         }
         Ok(rendered)
@@ -242,8 +266,15 @@ impl<'a> Run<'a> {
         let film = &mut rendered.film;
         let splats = splats_photons.then(|| IterationSplats::of_film(film, settings, whole.len()));
         let mut splats = splats.transpose()?;
+        // The first iteration of a picture whose time is short: half of that for photons, and half for what the camera sees.
+        let now = Instant::now();
+        let is_new = iteration == settings.samples.start && splatted.is_none();
+        let left = passes.deadline.filter(|_| is_new).map(|at| at.saturating_duration_since(now));
+        let half = left.map(|left| now + left / 2);
         let trace = |splats: Option<&IterationSplats>| {
-            install(pool, || Photons::of_iteration(self.integrator, &self.eye(), &whole, iteration, splats))
+            install(pool, || {
+                Photons::of_iteration(self.integrator, &self.eye(), &whole, iteration, splats, half)
+            })
         };
         let photons = trace(splats.as_ref().filter(|_| splatted.is_none()));
         if let Some(failures) = splatted {
@@ -251,6 +282,9 @@ impl<'a> Run<'a> {
         }
         let mut eye = self.eye();
         if let Some((photons, counters)) = &photons {
+            if let (Some(part), Some(splats)) = (photons.part, &splats) {
+                splats.scale_up(part);
+            }
             rendered.counters += *counters;
             eye.photons = Some(photons);
         }

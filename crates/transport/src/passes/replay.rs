@@ -103,7 +103,7 @@ pub fn replay(
     let integrator = plan.as_ref().map_or(integrator, |plan| &*plan.integrator);
     let mut eye = integrator.camera_rays(scene, camera, settings);
     let whole = Window::whole(width, height);
-    let photons = Photons::of_iteration(integrator, &eye, &[whole], sample, None);
+    let photons = Photons::of_iteration(integrator, &eye, &[whole], sample, None, None);
     eye.photons = photons.as_ref().map(|(photons, _)| photons);
     let mut tracer = Tracer::new(scene, false);
     let (ray, mut state) = eye.sample(place);

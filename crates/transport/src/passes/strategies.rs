@@ -76,7 +76,8 @@ pub fn strategies(
     let mut sums = Sums::default();
     for samples in iterations(integrator, &settings.samples) {
         let mut eye = integrator.camera_rays(scene, camera, settings);
-        let photons = install(&pool, || Photons::of_iteration(integrator, &eye, &tiles, samples.start, None));
+        let photons =
+            install(&pool, || Photons::of_iteration(integrator, &eye, &tiles, samples.start, None, None));
         eye.photons = photons.as_ref().map(|(photons, _)| photons);
         install(&pool, || sums.add(integrator, &eye, &tiles, samples, progress))?;
     }

@@ -66,7 +66,7 @@ pub fn work(
         let mut eye = integrator.camera_rays(scene, camera, settings);
         let of_whole = whole.tiles(TILE);
         let photons =
-            install(&pool, || Photons::of_iteration(integrator, &eye, &of_whole, samples.start, None));
+            install(&pool, || Photons::of_iteration(integrator, &eye, &of_whole, samples.start, None, None));
         eye.photons = photons.as_ref().map(|(photons, _)| photons);
         let each = |(tile, sums): &mut (Window, Vec<Sums>)| {
             count(integrator, &eye, tile, sums, &samples, with_accel, progress);

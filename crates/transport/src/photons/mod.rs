@@ -184,6 +184,8 @@ pub struct Photons<const N: usize = 1> {
     points: PhotonGrid<MediumPhoton<N>>,
     /// Their rays through thin ones.
     beams: PhotonBeams<N>,
+    /// The number of light subpaths, and that of all that there would have been, if time ended their iteration.
+    pub(crate) part: Option<[usize; 2]>,
 }
 
 /// Photons in the order in which they were traced.
@@ -198,6 +200,13 @@ pub(crate) struct TracedPhotons<const N: usize = 1> {
 impl<const N: usize> TracedPhotons<N> {
     pub(crate) const NONE: TracedPhotons<N> =
         TracedPhotons { surfaces: Vec::new(), walks: Vec::new(), points: Vec::new(), beams: Vec::new() };
+
+    /// Multiplies the throughput of all of them.
+    pub(crate) fn scale(&mut self, factor: f32) {
+        self.surfaces.iter_mut().for_each(|(_, photon)| photon.beta *= factor);
+        self.points.iter_mut().for_each(|(_, photon)| photon.beta *= factor);
+        self.beams.iter_mut().for_each(|beam| beam.subpath.beta *= factor);
+    }
 
     /// Adds those of later light subpaths.
     pub(crate) fn append(&mut self, mut others: TracedPhotons<N>) {
@@ -217,7 +226,7 @@ impl<const N: usize> Photons<N> {
             if walks.is_empty() { Vec::new() } else { order.iter().map(|&i| walks[i as usize]).collect() };
         let widest = points.iter().fold(0.0, |widest: f32, (_, point)| widest.max(point.radius));
         let (points, _) = PhotonGrid::new(points, widest);
-        Photons { techniques, surfaces, walks, points, beams: PhotonBeams::new(beams, radius) }
+        Photons { techniques, surfaces, walks, points, beams: PhotonBeams::new(beams, radius), part: None }
     }
 
     /// All techniques of this iteration.

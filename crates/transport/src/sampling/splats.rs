@@ -151,6 +151,11 @@ impl<'a> IterationSplats<'a> {
         Ok(IterationSplats { settings, scale_exponent: film.scale_exponent(), sign: 1, iterations })
     }
 
+    /// Scales them up, where they are of so many of all light subpaths of a first iteration.
+    pub(crate) fn scale_up(&self, part: [usize; 2]) {
+        scale_up(&mut self.iterations.lock().unwrap_or_else(PoisonError::into_inner).sums, part);
+    }
+
     /// Goes on with an iteration whose splats the film has already, and so many of which failed.
     pub(crate) fn going_on(self, failures: Vec<(u32, PixelFailures)>) -> IterationSplats<'a> {
         let mut iterations = self.iterations.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -231,6 +236,13 @@ impl Iterations {
     }
 }
 
+/// Scales sums of a part to those of all.
+fn scale_up(sums: &mut [[i64; 3]], [part, all]: [usize; 2]) {
+    let scaled = |sum: i64| i128::from(sum) * all as i128 / (part as i128).max(1);
+    let within = |sum: i128| sum.clamp(i128::from(i64::MIN), i128::from(i64::MAX)) as i64;
+    sums.iter_mut().for_each(|sums| *sums = sums.map(|sum| within(scaled(sum))));
+}
+
 impl Film {
     /// Adds whole iterations.
     pub(crate) fn add_iterations(&mut self, splats: Iterations, iterations: u32) -> Result<(), FilmError> {
@@ -243,6 +255,16 @@ impl Film {
         }
         self.count_iterations(splats.failures, iterations);
         Ok(())
+    }
+
+    /// Adds an iteration of which so many of all light subpaths have arrived, scaled up to all of them.
+    pub(crate) fn add_part_of_iteration(
+        &mut self,
+        mut splats: Iterations,
+        [arrived, all]: [usize; 2],
+    ) -> Result<(), FilmError> {
+        scale_up(&mut splats.sums, [arrived, all]);
+        self.add_iterations(splats, 1)
     }
 
     fn count_iterations(&mut self, failures: Vec<(u32, PixelFailures)>, iterations: u32) {

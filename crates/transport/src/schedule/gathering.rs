@@ -212,7 +212,17 @@ impl Gathering {
         }
         let (reached, batch_means) = self.schedule.end(Some(&film).filter(|_| !cancelled));
         let counters = self.counters;
-        Ok(Rendered { film, counters, cancelled, choice: None, reached, interval: None, batch_means })
+        Ok(Rendered {
+            film,
+            counters,
+            cancelled,
+            cut_short: false,
+            spacing: None,
+            choice: None,
+            reached,
+            interval: None,
+            batch_means,
+        })
     }
 
     fn is_late(&self) -> bool {

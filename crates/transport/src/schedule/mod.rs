@@ -16,7 +16,7 @@ use crate::schedule::settings::{RenderSettings, Stop};
 use crate::schedule::stop::{NoiseMemory, Reached, StopMonitor};
 use std::collections::VecDeque;
 use std::ops::Range;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Decides the passes of a picture, and looks at the film after each of them.
 pub(crate) struct Schedule {
@@ -159,6 +159,16 @@ impl Schedule {
         if let Some(batches) = self.batches.as_mut().filter(|_| is_end) {
             batches.close(film, done);
         }
+    }
+
+    /// When time ends the picture.
+    pub(crate) fn deadline(&self) -> Option<Instant> {
+        self.watch.as_ref().and_then(StopMonitor::deadline)
+    }
+
+    /// Notes that time ended the picture within a pass.
+    pub(crate) fn cut_short(&mut self) {
+        self.watch.iter_mut().for_each(StopMonitor::cut_short);
     }
 
     /// The probable number of samples per pixel, if it is not certain.

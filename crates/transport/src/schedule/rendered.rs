@@ -17,6 +17,12 @@ pub struct Rendered {
     /// True when it was cancelled. Then [`Film::coverage`] states which samples the film holds; each of them is
     /// complete.
     pub cancelled: bool,
+    /// True when a limit of time ended it within a pass over the film: some pixels have one more sample than others.
+    pub cut_short: bool,
+    /// The distance between the pixels that surely have a sample, if the picture ended within its first pass under a limit of time. They
+    /// are all those whose column and row are multiples of it; of the others only some have one ([`crate::Completion`]), and [`Film::coverage`]
+    /// states where all have.
+    pub spacing: Option<u32>,
     /// The choice of an integrator that chooses.
     pub choice: Option<Choice>,
     /// State of the picture when it ended, where it could end early ([`crate::RenderSettings::stop`]).

@@ -112,9 +112,9 @@ impl RenderSettings {
         SplatBounds { min: (first - radius) / size, max: (last + radius) / size }
     }
 
-    /// The settings that choosing integrators see: the choice is the same with an interval and without.
+    /// The settings that choosing integrators see: the choice is the same with an interval and without, and with a limit of noise or time.
     pub(crate) fn for_planning(&self) -> RenderSettings {
-        RenderSettings { interval: false, batch_means: false, ..self.clone() }
+        RenderSettings { interval: false, batch_means: false, stop: Stop::default(), ..self.clone() }
     }
 
     pub(crate) fn check(&self) -> Result<(), RenderError> {

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 /// The state of a picture that may end early.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reached {
-    /// Samples per pixel.
+    /// Samples per pixel; where time ended the picture within a pass ([`crate::Rendered::cut_short`]), those of complete passes, but at least one.
     pub spp: u32,
     /// The remaining noise, where a target was set: the standard error of a pixel relative to the light around it, as a
     /// mean over blocks of 8 × 8 pixels. Light darker than 0.3 of the picture's mean counts as that bright.
@@ -83,6 +83,17 @@ impl StopMonitor {
     /// True if time may end the picture.
     pub(crate) fn has_clock(&self) -> bool {
         self.stop.time_limit.is_some()
+    }
+
+    /// When time ends the picture.
+    pub(crate) fn deadline(&self) -> Option<Instant> {
+        let limit = self.stop.time_limit?;
+        self.begun.checked_add(limit.saturating_sub(self.earlier))
+    }
+
+    /// Notes that time ended the picture within a pass: within the first one, some pixels have one sample and the others none.
+    pub(crate) fn cut_short(&mut self) {
+        self.reached.get_or_insert(Reached { spp: 1, noise: None, bias: None });
     }
 
     fn elapsed(&self) -> Duration {

@@ -13,6 +13,7 @@ mod dispersion;
 mod enclosures;
 mod faint_lights;
 mod features;
+mod first_pass;
 mod footprint;
 mod holes;
 mod interval;

@@ -59,6 +59,9 @@ impl Rendered<'_> {
         let cut = match self.is_whole {
             false if self.timed_out => "; ended by --timeout: this is the picture so far",
             false => "; interrupted: this is the picture so far",
+            true if self.outcome.rendered.spacing.is_some() => {
+                "; its time ended within the first sample: pixels without one are interpolated"
+            }
             true => "",
         };
         if let Some(overrun) = &self.overrun {
@@ -140,7 +143,14 @@ impl Rendered<'_> {
 
 /// A number of samples as text; their mean over the pixels need not be whole.
 pub fn counted_samples(number: f64) -> String {
-    let rounded = if number < 10.0 { (number * 10.0).round() / 10.0 } else { number.round() };
+    let steps = if number < 1.0 {
+        100.0
+    } else if number < 10.0 {
+        10.0
+    } else {
+        1.0
+    };
+    let rounded = (number * steps).round() / steps;
     if rounded == 1.0 { "1 sample".to_owned() } else { format!("{rounded} samples") }
 }
 

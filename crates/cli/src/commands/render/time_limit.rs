@@ -1,6 +1,6 @@
 //! Whether a picture was done within its time limit, and where the time went if it was not.
 
-use crate::process::output;
+use super::log::counted_samples;
 use bilux::{Job, Outcome};
 use std::time::Duration;
 
@@ -15,13 +15,12 @@ pub fn overrun(job: &Job, outcome: &Outcome, times: [Duration; 3]) -> Option<Str
     if outcome.rendered.cancelled || all <= limit + TOLERANCE.0.max(limit.mul_f64(TOLERANCE.1)) {
         return None;
     }
-    let samples = outcome.rendered.reached.map_or(0, |reached| reached.spp);
     // The limit was given as an f32, and prints as it was given only as one.
     let limit = limit.as_secs_f32();
     // Rounded before they are subtracted, so that the parts sum to the total.
     let [before, rendered, all] = times.map(|time| (time.as_secs_f64() * 10.0).round() / 10.0);
     let (rendering, after) = (rendered - before, all - rendered);
-    let samples = output::counted(samples, "sample", "samples");
+    let samples = counted_samples(outcome.samples_per_pixel());
     Some(format!(
         "took {all:.1} s instead of {limit} s: reading and building {before:.1} s, {samples} per pixel \
          {rendering:.1} s, denoising and writing {after:.1} s"

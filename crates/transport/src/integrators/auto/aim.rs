@@ -8,7 +8,8 @@
 //! reducing it. So what each half of them teaches is tested on the other half, and where that gains little nothing is
 //! aimed.
 
-use super::pilot::{Grid, GridPass, PilotRound, SAMPLES, sample_all};
+use super::grid::Grid;
+use super::pilot::{GridPass, PilotRound, SAMPLES, sample_all};
 use super::sets::DARK;
 use crate::light::emission::Guide;
 use crate::photons::{MergeCounts, Merging};
@@ -18,6 +19,7 @@ use bilux_math::Vec2;
 use bilux_math::parallel::{map, ranges};
 use bilux_scene::Counters;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 /// Number of light subpaths of an iteration: one for so many of the film's pixels, within these limits.
 const PART: u64 = 8;
@@ -57,15 +59,18 @@ pub(super) fn light_paths(pixels: u64) -> u64 {
 }
 
 /// Learns from a round whose light subpaths are not aimed. `film` are the techniques of the picture, of whose photons `near` are
-/// merged with a vertex that the camera sees.
+/// merged with a vertex that the camera sees. Learns nothing if the time is too short for all of the round, as
+/// the last of what is returned says.
 pub(super) fn learn(
     round: PilotRound,
     merging: &Merging,
     film: &TechniqueCounts,
     near: f64,
-) -> (Option<Guide>, Counters) {
+    time: Option<Duration>,
+) -> (Option<Guide>, Counters, bool) {
+    let begun = Instant::now();
     let mut counters = Counters::default();
-    let Some(untrained) = Guide::untrained(round.eye.context.scene) else { return (None, counters) };
+    let Some(untrained) = Guide::untrained(round.eye.context.scene) else { return (None, counters, false) };
     let round = round.guided(&Some(Arc::new(untrained.clone())));
     let grid = Grid::of(round.eye.settings);
     let tiles = grid.tiles();
@@ -98,16 +103,20 @@ pub(super) fn learn(
             lessons.finds.push((index as u32, seen.cell, seen.square / (1.0 + near)));
         }
         halves.push(lessons.finds.len());
+        let expected = begun.elapsed() * SAMPLES / (iteration + 1);
+        if time.is_some_and(|time| expected > time) {
+            return (None, counters, true);
+        }
     }
     let starts = starts(&round, untrained.cells());
     let middle = halves[halves.len() / 2 - 1];
     let parts = [0..middle, middle..lessons.finds.len()].map(|part| lessons.squares(part, starts.len()));
     let gains = [0, 1].map(|i| untrained.gain(&starts, &parts[i], &parts[1 - i]));
     if gains.map(f64::recip).iter().sum::<f64>() > 2.0 / WORTH_AIMING {
-        return (None, counters);
+        return (None, counters, false);
     }
     let all: Vec<f64> = parts[0].iter().zip(&parts[1]).map(|(a, b)| a + b).collect();
-    (untrained.trained(&worth(&starts, &all)), counters)
+    (untrained.trained(&worth(&starts, &all)), counters, false)
 }
 
 /// Frequency with which a subpath begins in each cell, times the root mean square of what it contributes.

@@ -1,6 +1,6 @@
 //! Part of a picture that path tracing shades in columns, which costs less.
 
-use super::pilot::Grid;
+use super::grid::Grid;
 use crate::film::failures::SamplePlace;
 use crate::film::window::Window;
 use crate::queue::PathQueue;

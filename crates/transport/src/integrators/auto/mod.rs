@@ -1,13 +1,14 @@
 //! `auto`: runs a pilot to decide which techniques are worth their time in this scene, and then uses these.
 //! [Grittmann 2022]
 //!
-//! The pilot depends on scene, film, seed and depth alone, and so does the choice: not on threads, crop, range of
-//! samples, or time. None of the pilot's samples is in the picture.
+//! The pilot depends on scene, film, seed and depth alone, and so does the choice: not on threads, crop or range of
+//! samples. Only where a limit of time leaves too little for all of its samples it takes fewer. None of them is in the picture.
 
 mod aim;
 mod columns;
 mod contributions;
 mod cost;
+mod grid;
 mod outliers;
 mod pilot;
 mod sets;
@@ -30,6 +31,7 @@ use bilux_scene::{Camera, Counters, Ray, Scene, SceneError};
 use pilot::{Block, PilotRound, WIDEST};
 use sets::{SETS, Set, TECHNIQUES};
 use std::sync::Arc;
+use std::time::Instant;
 
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     entry: Entry {
@@ -102,6 +104,9 @@ struct Auto {
 /// A set must be better by this factor than one that comes before it, or that does not blur.
 const WORTH_MORE: f64 = 1.1;
 
+/// The pilot takes at most one part in this many of a limit of time, but at least one sample.
+const PILOT_PART: u32 = 4;
+
 /// Default merging radius of the first iteration, in radii of a disc as large as a pixel's footprint.
 const PIXELS: f32 = 3.0;
 
@@ -128,6 +133,7 @@ impl Chooser for Auto {
         if camera.receives() {
             return self.without_pilot();
         }
+        let (begun, time) = (Instant::now(), film.stop.time_limit.map(|limit| limit / PILOT_PART));
         let settings = pilot::settings(film);
         let pixels = u64::from(film.width) * u64::from(film.height);
         let light_paths = [aim::light_paths(pixels), pilot::LIGHT_PATHS, pilot::LIGHT_PATHS];
@@ -162,11 +168,14 @@ impl Chooser for Auto {
         };
         let mut counters = Counters::default();
         let wide = pilot::merging(&merging, pixels);
-        let mut guide = None;
+        let (mut guide, mut is_short) = (None, false);
         if self.aims {
-            let (learned, rays) = aim::learn(round(0), &wide, &techniques(&SETS[SETS.len() - 1]), NEAR);
+            let part = time.map(|time| time / 2);
+            let (learned, rays, ended) =
+                aim::learn(round(0), &wide, &techniques(&SETS[SETS.len() - 1]), NEAR, part);
             counters += rays;
             guide = learned.map(Arc::new);
+            is_short = ended;
         }
         let all_sets = |own: &MergeCounts| {
             let own = MergeCounts { light_paths: 1.0, ..*own };
@@ -174,7 +183,8 @@ impl Chooser for Auto {
             TechniqueCounts::pack(all)
         };
         let rounds: Vec<PilotRound> = (1..settings.len()).map(|i| round(i).guided(&guide)).collect();
-        let mut seen = pilot::look(&rounds, &wide, all_sets);
+        let deadline = time.and_then(|time| begun.checked_add(time));
+        let mut seen = pilot::look(&rounds, &wide, all_sets, deadline);
         seen.steps.in_columns = columns::share_in_columns(&rounds[0].eye, film);
         counters += seen.counters;
         let candidates: Vec<Candidate> = SETS
@@ -192,7 +202,8 @@ impl Chooser for Auto {
             chosen: self.given.unwrap_or_else(|| self.choose(&candidates, lights.has_beams())),
             candidates,
         };
-        Plan { integrator: self.made_of(&SETS[choice.chosen], merging, guide), choice, counters }
+        let integrator = self.made_of(&SETS[choice.chosen], merging, guide);
+        Plan { integrator, choice, counters, is_hurried: is_short || seen.is_short }
     }
 }
 
@@ -206,6 +217,7 @@ impl Auto {
             integrator,
             choice: Choice { chosen: 0, candidates: vec![only] },
             counters: Counters::default(),
+            is_hurried: false,
         }
     }
 

@@ -7,6 +7,7 @@
 
 use super::contributions::Contributions;
 use super::cost::Steps;
+use super::grid::Grid;
 use super::sets::SET_COUNT;
 use crate::bidirectional::{BothEnds, BothEndsQueue, QueuedSample};
 use crate::film::failures::SamplePlace;
@@ -23,6 +24,7 @@ use bilux_math::hash::hash_words;
 use bilux_math::parallel::map_with;
 use bilux_scene::{Counters, Tracer};
 use std::sync::Arc;
+use std::time::Instant;
 
 /// The pilot takes two rounds, to separate what changes between them from what does not; and one before these, to learn
 /// where light subpaths should be aimed.
@@ -31,18 +33,8 @@ pub(super) const ROUNDS: u64 = 2;
 /// Samples per pixel in a round: enough to show the gain of their even distribution, which differs between techniques.
 pub(super) const SAMPLES: u32 = 8;
 
-/// Side of a block of pixels that is evaluated as a whole.
-const BLOCK: u32 = 4;
-
 /// The number of blocks whose samples are taken together.
 const TOGETHER: usize = 8;
-
-/// Maximum number of pixels of a pilot; and minimum, unless the film has fewer. More make a better choice, but not in proportion
-/// to their time: docs/adr/0013-auto.md has figures.
-const MAX_PIXELS: u64 = 256;
-const MIN_PIXELS: u64 = 128;
-/// Between the two, the pilot has one pixel for this many of the film's.
-const PART: u64 = 96;
 
 /// Number of photon paths in one of its iterations. Rare light is seen by them alone.
 pub(super) const LIGHT_PATHS: u64 = 512;
@@ -72,6 +64,8 @@ pub(super) struct Pilot {
     /// Steps of one sample with all techniques.
     pub(super) steps: Steps,
     pub(super) counters: Counters,
+    /// Whether time ended it before all of its samples.
+    pub(super) is_short: bool,
 }
 
 /// The settings of a film's pilot rounds. They depend neither on the number of samples nor on the crop, so that all
@@ -85,47 +79,6 @@ pub(super) fn settings(film: &RenderSettings) -> [RenderSettings; 1 + ROUNDS as 
         seed: hash_words([film.seed, 0x7069_6c6f_7421 + round]),
         ..film.clone()
     })
-}
-
-/// The pixels of the film that a pilot samples: a regular grid of them, each at its true size. Differences between them
-/// are not noise, as they would be within larger pixels.
-pub(super) struct Grid {
-    film: [u32; 2],
-    /// Columns and rows.
-    pub(super) size: [u32; 2],
-}
-
-impl Grid {
-    pub(super) fn of(film: &RenderSettings) -> Grid {
-        let pixels = u64::from(film.width) * u64::from(film.height);
-        let wanted = (pixels / PART).clamp(MIN_PIXELS, MAX_PIXELS).min(pixels);
-        let scale = (wanted as f64 / pixels as f64).sqrt();
-        let size =
-            [film.width, film.height].map(|side| ((f64::from(side) * scale).round() as u32).clamp(1, side));
-        Grid { film: [film.width, film.height], size }
-    }
-
-    pub(super) fn tiles(&self) -> Vec<Window> {
-        Window::whole(self.size[0], self.size[1]).tiles(BLOCK)
-    }
-
-    /// The film's pixel at a position in the grid.
-    pub(super) fn pixel(&self, (x, y): (u32, u32)) -> (u32, u32) {
-        let along = |at: u32, axis: usize| {
-            let middle = (2 * u64::from(at) + 1) * u64::from(self.film[axis]);
-            (middle / (2 * u64::from(self.size[axis]))) as u32
-        };
-        (along(x, 0), along(y, 1))
-    }
-
-    /// The tile at a point of the film's plane; `None` beyond the film's edge, from where little light comes into the picture.
-    pub(super) fn tile_at(&self, film: Vec2) -> Option<usize> {
-        let [width, height] = self.size;
-        let is_on_film = film.cmpge(Vec2::ZERO).all() && film.cmplt(Vec2::ONE).all();
-        let place = (film * Vec2::new(width as f32, height as f32)).as_uvec2();
-        let place = [place.x.min(width - 1), place.y.min(height - 1)].map(|at| at / BLOCK);
-        is_on_film.then_some((place[1] * width.div_ceil(BLOCK) + place[0]) as usize)
-    }
 }
 
 /// The settings of the photons of a round: the light subpaths of a film of its own.
@@ -175,11 +128,12 @@ impl PilotRound<'_> {
     }
 }
 
-/// Runs the pilot. `techniques` gives all sets, given the η of the pilot's own photons.
+/// Runs the pilot, with fewer samples if time ends it. `techniques` gives all sets, given the η of the pilot's own photons.
 pub(super) fn look(
     rounds: &[PilotRound],
     merging: &Merging,
     techniques: impl Fn(&MergeCounts) -> TechniqueCounts<SET_COUNT> + Sync,
+    deadline: Option<Instant>,
 ) -> Pilot {
     let grid = Grid::of(rounds[0].eye.settings);
     let tiles = grid.tiles();
@@ -187,22 +141,31 @@ pub(super) fn look(
         blocks: vec![Block::default(); tiles.len()],
         steps: Steps::default(),
         counters: Counters::default(),
+        is_short: false,
     };
     let pixels = tiles.iter().map(Window::pixels).sum::<usize>();
-    let sums = |round: &PilotRound, pilot: &mut Pilot| -> Vec<Vec<[f64; SET_COUNT]>> {
-        let mut sums: Vec<_> = tiles.iter().map(|tile| vec![[0.0; SET_COUNT]; tile.pixels()]).collect();
-        for iteration in 0..SAMPLES {
-            let pass = GridPass { grid: &grid, tiles: &tiles, iteration };
-            one_sample(round, merging, &techniques, pass, pilot, &mut sums);
+    let sums = || tiles.iter().map(|tile| vec![[0.0; SET_COUNT]; tile.pixels()]).collect::<Vec<_>>();
+    let (mut both, mut taken) = ([sums(), sums()], 0);
+    while taken < SAMPLES && (taken == 0 || !is_over(deadline)) {
+        let pass = GridPass { grid: &grid, tiles: &tiles, iteration: taken };
+        for (round, sums) in rounds.iter().zip(&mut both) {
+            one_sample(round, merging, &techniques, pass, &mut pilot, sums);
         }
-        sums
-    };
-    let both: Vec<_> = rounds.iter().map(|round| sums(round, &mut pilot)).collect();
-    for (index, block) in pilot.blocks.iter_mut().enumerate() {
-        block.compare(&both[0][index], &both[1][index]);
+        taken += 1;
     }
-    pilot.steps = Steps::default().plus(&pilot.steps, 1.0 / (pixels as f64 * SAMPLES_IN_ALL));
+    let samples = f64::from(taken);
+    pilot.is_short = taken < SAMPLES;
+    for (index, block) in pilot.blocks.iter_mut().enumerate() {
+        block.scale(f64::from(SAMPLES) / samples);
+        block.compare(&both[0][index], &both[1][index], samples);
+    }
+    pilot.steps = Steps::default().plus(&pilot.steps, 1.0 / (pixels as f64 * ROUNDS as f64 * samples));
     pilot
+}
+
+/// Whether it is too late for more.
+pub(super) fn is_over(deadline: Option<Instant>) -> bool {
+    deadline.is_some_and(|deadline| Instant::now() >= deadline)
 }
 
 /// One sample of each of a grid's pixels.
@@ -232,7 +195,7 @@ fn one_sample(
             pilot.steps = std::mem::take(&mut pilot.steps).plus(&look.steps, 1.0);
             pilot.blocks[index].add(&look.sample, share(&pass.tiles[index]));
             for (sum, found) in sum.iter_mut().zip(look.sample.sums) {
-                *sum += found / f64::from(SAMPLES);
+                *sum += found;
             }
             for (film, seen) in &look.seen {
                 let Some(index) = pass.grid.tile_at(*film) else { continue };
@@ -258,7 +221,8 @@ where
     O: LightPathVisitor<N>,
 {
     let sources = Window::whole(light.settings.width, 1).tiles(256);
-    let (photons, mut counted) = Photons::trace(light, merging, &sources, iteration, techniques, visitor);
+    let (photons, mut counted) =
+        Photons::trace(light, merging, &sources, iteration, techniques, visitor, None);
     let splats = visitor.is_none();
     let both_ends = BothEnds::merging(&photons, splats, merging.roulette_depth);
     let look = |queue: &mut BothEndsQueue<N>, tiles: &[Window]| {
@@ -384,13 +348,24 @@ impl Block {
         }
     }
 
-    /// Adds what the means of each pixel in both rounds show: half the square of their difference is, on average, the
-    /// variance of one.
-    fn compare(&mut self, a: &[[f64; SET_COUNT]], b: &[[f64; SET_COUNT]]) {
+    /// Multiplies all that was added, where there are fewer samples than were expected.
+    fn scale(&mut self, factor: f64) {
+        let finds = std::mem::take(&mut self.finds);
+        self.mean *= factor;
+        for (k, found) in finds.iter().enumerate() {
+            self.finds[k].plus(found, factor);
+            self.variance[k] *= factor;
+            self.lost[k] *= factor;
+        }
+    }
+
+    /// Adds what the means of each pixel over so many samples in both rounds show, given their sums: half the square of their difference
+    /// is, on average, the variance of one.
+    fn compare(&mut self, a: &[[f64; SET_COUNT]], b: &[[f64; SET_COUNT]], samples: f64) {
         for (one, other) in a.iter().zip(b) {
             for k in 0..SET_COUNT {
-                let apart = one[k] - other[k];
-                self.variance[k] += 0.5 * apart * apart * f64::from(SAMPLES) / a.len() as f64;
+                let apart = (one[k] - other[k]) / samples;
+                self.variance[k] += 0.5 * apart * apart * samples / a.len() as f64;
             }
         }
     }

@@ -1,0 +1,211 @@
+//! Pictures whose time ends within their first pass: samples that are spread evenly, light subpaths that stand for all, and a completion
+//! from surfaces.
+
+use crate::common::{built, effort, integrator, mixed, shoot, without_mirrors};
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::{Scene, Spec};
+use bilux_transport::{
+    Completion, Features, Film, Observer, PixelIntegrator, RenderSettings, Silent, Standing, Stop, Window,
+    features, integrators, render_from,
+};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// No time at all: only what is taken whatever time it is.
+fn hurried(width: u32, height: u32) -> RenderSettings {
+    let stop = Stop { noise: None, time_limit: Some(Duration::from_nanos(1)) };
+    RenderSettings { stop, threads: 2, ..RenderSettings::new(width, height, 1000) }
+}
+
+#[test]
+fn the_samples_that_there_are_lie_on_a_lattice() {
+    let scene = built(&mixed());
+    for name in ["path", "bdpt", "vcm", "sppm", "whitted"] {
+        let integrator = integrator(name);
+        let (width, height) = (43, 29);
+        let cut = shoot(&scene, &*integrator, &hurried(width, height));
+        let whole = shoot(&scene, &*integrator, &RenderSettings::new(width, height, 1));
+        assert!(cut.cut_short && !cut.cancelled, "{name}");
+        assert_eq!((cut.spacing, cut.reached.unwrap().spp), (Some(8), 1), "{name}");
+        assert!(cut.film.coverage().pieces().is_empty(), "{name}: no window has all of its samples");
+        for (x, y) in (0..width * height).map(|i| (i % width, i / width)) {
+            let is_on_lattice = x % 8 == 0 && y % 8 == 0;
+            assert_eq!(cut.film.samples(x, y), u32::from(is_on_lattice), "{name}: {x},{y}");
+            // Other pixels have no part in these.
+            if name == "path" && is_on_lattice {
+                assert_eq!(cut.film.pixel(x, y), whole.film.pixel(x, y), "{x},{y}");
+            }
+        }
+        let mut part = cut.film.clone();
+        part.keep_covered();
+        assert!(part.counts().iter().all(|count| *count == 0), "{name}: a part has what it states");
+    }
+}
+
+/// With enough time a picture is that of as many samples without a limit, to the bit.
+#[test]
+fn spread_samples_are_those_of_any_other_order() {
+    let scene = built(&mixed());
+    for name in ["path", "bdpt", "vcm"] {
+        let stop = Stop { noise: None, time_limit: Some(Duration::from_secs(1000)) };
+        let settings = RenderSettings { threads: 2, ..RenderSettings::new(43, 29, 3) };
+        let whole = shoot(&scene, &*integrator(name), &settings);
+        let limited = shoot(&scene, &*integrator(name), &RenderSettings { stop, ..settings });
+        assert!(limited.film == whole.film && !limited.cut_short && limited.spacing.is_none(), "{name}");
+    }
+}
+
+/// The mean of the pixels of a lattice, and of all splats, over pictures with other seeds, each with its standard error.
+fn mean_light(
+    scene: &Scene,
+    integrator: &dyn PixelIntegrator,
+    settings: &RenderSettings,
+    pictures: u32,
+) -> [[f64; 2]; 2] {
+    let of_picture = |seed: u32| {
+        let settings = RenderSettings { seed: u64::from(seed), ..settings.clone() };
+        let film = shoot(scene, integrator, &settings).film;
+        let places = (0..film.width() * film.height()).map(|i| (i % film.width(), i / film.width()));
+        let on_lattice = places.clone().filter(|(x, y)| x % 8 == 0 && y % 8 == 0);
+        let own = on_lattice.clone().map(|(x, y)| f64::from(film.sampled(x, y).luminance())).sum::<f64>();
+        let splats = places.clone().map(|(x, y)| f64::from(film.splatted(x, y).luminance())).sum::<f64>();
+        [own / on_lattice.count() as f64, splats / places.count() as f64]
+    };
+    let all: Vec<[f64; 2]> = (0..pictures).map(of_picture).collect();
+    [0, 1].map(|part| {
+        let mean = all.iter().map(|light| light[part]).sum::<f64>() / f64::from(pictures);
+        let squares = all.iter().map(|light| (light[part] - mean) * (light[part] - mean)).sum::<f64>();
+        [mean, (squares / f64::from(pictures * (pictures - 1))).sqrt()]
+    })
+}
+
+/// Of light subpaths that are traced beside camera subpaths a sixty-fourth has arrived, of those that leave photons the first of twelve tiles.
+/// Without scaling their light would be a small part of what it is.
+#[test]
+fn light_subpaths_so_far_stand_for_all() {
+    let lamp = Spec::new("", "rect").with("position", Vec3::new(-1.0, 3.0, 1.0)).with("intensity", 9.0f32);
+    let lamp = lamp.with("edge_u", Vec3::X * 2.0).with("edge_v", Vec3::Z * 1.0);
+    let scene = built(&without_mirrors(lamp));
+    let of_kind = |kind: &str| Spec::new("", kind);
+    // What is aimed shares the light among techniques otherwise, and in a hurry nothing is.
+    let photons = of_kind("auto").with("techniques", "path-light-photons").with("aim", false);
+    let sppm = of_kind("sppm").with("radius", 0.1f32);
+    for (spec, has_splats) in [
+        (of_kind("light"), true),
+        (of_kind("bdpt"), true),
+        (of_kind("vcm"), true),
+        (sppm, false),
+        (photons, true),
+    ] {
+        let integrator = integrators::build(&spec).unwrap();
+        let cut = mean_light(&scene, &*integrator, &hurried(64, 48), effort(400, 4000));
+        let whole = mean_light(&scene, &*integrator, &RenderSettings::new(64, 48, 1), 64);
+        for ([cut, error], [whole, of_whole]) in cut.into_iter().zip(whole) {
+            let bound = 4.0 * (error * error + of_whole * of_whole).sqrt();
+            assert!((cut - whole).abs() <= bound, "{}: {cut} ± {error}, not {whole} ± {of_whole}", spec.kind);
+            assert!(error <= 0.15 * whole, "{}: {cut} ± {error} tells nothing", spec.kind);
+        }
+        assert_eq!(whole[1][0] > 0.0, has_splats, "{}", spec.kind);
+    }
+}
+
+/// Two walls with a fine pattern under different light, and an edge between lattice points.
+#[test]
+fn a_picture_is_completed_along_its_surfaces() {
+    let (width, height) = (48u32, 24u32);
+    let window = Window::whole(width, height);
+    let is_left = |x: u32| x < 22;
+    let albedo = |x: u32, y: u32| {
+        let bright = if (x / 2 + y / 3).is_multiple_of(2) { 1.0 } else { 0.4 };
+        if is_left(x) { Rgb::new(0.8, 0.5, 0.3) * bright } else { Rgb::new(0.2, 0.3, 0.9) * bright }
+    };
+    let light = |x: u32, y: u32| albedo(x, y) * if is_left(x) { 2.0 + 0.02 * y as f32 } else { 6.0 };
+    let mut film = Film::new(width, height, 24).unwrap();
+    let places = || (0..window.pixels()).map(|i| window.position(i));
+    for (x, y) in places().filter(|(x, y)| x % 4 == 0 && y % 4 == 0) {
+        film.add(x, y, 0, light(x, y));
+    }
+    let features = Features {
+        window,
+        albedo: places().map(|(x, y)| albedo(x, y)).collect(),
+        mean_normal: places().map(|(x, _)| if is_left(x) { Vec3::X } else { Vec3::Z }).collect(),
+        mean_depth: places().map(|(x, _)| if is_left(x) { 3.0 } else { 7.0 }).collect(),
+        haze: Vec::new(),
+        coverage: vec![1.0; window.pixels()],
+    };
+    let worst = |features: Option<&Features>| {
+        let completion = Completion::new(&film, 4, features);
+        assert_eq!(completion.size, [12, 6]);
+        let all = completion.completed(&completion.light).unwrap();
+        let apart = places().zip(all).map(|((x, y), found)| {
+            let apart = (found - light(x, y)) / light(x, y);
+            apart.to_array().into_iter().fold(0.0, |worst: f32, c| worst.max(c.abs()))
+        });
+        apart.fold(0.0, f32::max)
+    };
+    assert!(worst(Some(&features)) < 0.06, "{}", worst(Some(&features)));
+    assert!(worst(None) > 0.5, "{}", worst(None));
+}
+
+/// A point whose samples are all bad, and one that has more samples than that of the lattice.
+#[test]
+fn a_completion_averages_what_is_there() {
+    let mut film = Film::new(9, 5, 24).unwrap();
+    for (x, y, light) in
+        [(0, 0, 1.0), (1, 1, 3.0), (4, 0, f32::NAN), (8, 0, 5.0), (0, 4, 2.0), (4, 4, 2.0), (8, 4, 2.0)]
+    {
+        film.add(x, y, 0, Rgb::grey(light));
+    }
+    let completion = Completion::new(&film, 4, None);
+    assert_eq!(completion.size, [3, 2]);
+    let greens: Vec<f32> = completion.light.iter().map(|light| light.g).collect();
+    assert!(greens[1].is_nan());
+    assert_eq!([greens[0], greens[2], greens[3], greens[4], greens[5]], [2.0, 5.0, 2.0, 2.0, 2.0]);
+    assert!(completion.completed(&completion.light).unwrap().iter().all(|light| light.is_finite()));
+    assert_eq!(completion.means(&[1.0; 45]), [1.0; 6]);
+}
+
+#[test]
+fn features_of_pixels_that_time_left_are_those_beside_them() {
+    let scene = built(&mixed());
+    let camera = &*scene.cameras()[0].1;
+    let of = |time, spp| {
+        let settings = RenderSettings::new(37, 26, spp);
+        features(&scene, camera, &*integrator("whitted"), &settings, time, &Silent).unwrap().unwrap()
+    };
+    let (whole, cut) = (of(None, 1), of(Some(Duration::ZERO), 1));
+    for (x, y) in (0..37 * 26).map(|i| (i % 37, i / 37)) {
+        let beside = y / 8 * 8 * 37 + x / 8 * 8;
+        assert_eq!(cut.albedo[y * 37 + x], whole.albedo[beside], "{x},{y}");
+        assert_eq!(cut.mean_depth[y * 37 + x].to_bits(), whole.mean_depth[beside].to_bits(), "{x},{y}");
+    }
+    assert!(of(Some(Duration::from_secs(1000)), 1) == whole);
+}
+
+/// Wants a checkpoint until there is one.
+#[derive(Default)]
+struct Keeper(AtomicBool);
+
+impl Observer for Keeper {
+    fn wants_checkpoint(&self) -> bool {
+        !self.0.load(Ordering::Relaxed)
+    }
+
+    fn keep(&self, _standing: &Standing) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+/// A render that went on from such a picture would choose with all of a pilot's samples, perhaps otherwise.
+#[test]
+fn a_choice_in_a_hurry_keeps_no_checkpoint() {
+    let scene = built(&mixed());
+    let (camera, auto, keeper) = (&*scene.cameras()[0].1, integrator("auto"), Keeper::default());
+    let hurried = render_from(None, &scene, camera, &*auto, &hurried(40, 32), &Silent, &keeper).unwrap();
+    assert!(hurried.cut_short && hurried.choice.is_some() && !keeper.0.load(Ordering::Relaxed));
+    // With enough time the choice is that without a limit.
+    let stop = Stop { noise: None, time_limit: Some(Duration::from_secs(1000)) };
+    let settings = RenderSettings::new(40, 32, 1);
+    let unlimited = shoot(&scene, &*auto, &settings);
+    assert_eq!(shoot(&scene, &*auto, &RenderSettings { stop, ..settings }).choice, unlimited.choice);
+}
