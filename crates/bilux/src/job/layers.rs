@@ -48,16 +48,14 @@ impl Outcome {
     /// # Errors
     /// If memory is short, or the denoiser fails.
     pub fn denoised(&self, chosen: &DenoiserChoice) -> Result<Picture, Error> {
-        let smooth = match self.completion() {
-            Some(completion) => {
-                let coverage = self.model_coverage.as_ref().or(self.coverage.as_ref());
-                let coverage = coverage.map(|coverage| completion.means(coverage));
-                let smooth = chosen.denoiser.denoise(&Points { completion: &completion, coverage })?;
-                completion.completed(&smooth)?
-            }
-            None => chosen.denoiser.denoise(self)?,
+        let Some(completion) = self.completion() else {
+            let smooth = chosen.denoiser.denoise(self)?;
+            return Ok(self.encoded(repainted(self.light()?, &smooth)));
         };
-        Ok(self.encoded(repainted(self.light()?, &smooth)))
+        let coverage = self.model_coverage.as_ref().or(self.coverage.as_ref());
+        let coverage = coverage.map(|coverage| completion.means(coverage));
+        let smooth = chosen.denoiser.denoise(&Points { completion: &completion, coverage })?;
+        Ok(self.encoded(self.painted(Some(&completion.completed(&smooth)?))?))
     }
 }
 

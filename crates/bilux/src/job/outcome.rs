@@ -1,9 +1,11 @@
 //! The result of a render, and its pictures.
 
 use crate::Error;
+use bilux_math::Rgb;
 use bilux_pictures::Picture;
 use bilux_pictures::denoise::repainted;
 use bilux_transport::{Completion, Features, Reached, Rendered};
+use std::time::Duration;
 
 /// Features and labels of the visible surfaces, as far as asked for ([`layers`](crate::JobRequest::layers)).
 #[derive(Clone, Default)]
@@ -12,6 +14,8 @@ pub struct Surfaces {
     pub features: Option<Features>,
     /// Labels: channels of a picture of the film's window, and the names of their numbers as its metadata.
     pub labels: Option<Picture>,
+    /// The time that they took.
+    pub time: Duration,
 }
 
 /// Outcome of a render, with whatever else the picture needs.
@@ -58,10 +62,17 @@ impl Outcome {
 
     /// The light in the film's window.
     pub(crate) fn light(&self) -> Result<Picture, Error> {
+        let completion = self.completion();
+        let completed = completion.map(|completion| completion.completed(&completion.light)).transpose()?;
+        self.painted(completed.as_deref())
+    }
+
+    /// The picture of the film's window, with other light if that is given.
+    pub(crate) fn painted(&self, light: Option<&[Rgb]>) -> Result<Picture, Error> {
         let film = &self.rendered.film;
         let mut picture = film.window_to_picture(film.window())?;
-        if let Some(completion) = self.completion() {
-            picture = repainted(picture, &completion.completed(&completion.light)?);
+        if let Some(light) = light {
+            picture = repainted(picture, light);
         }
         if let Some(coverage) = &self.coverage {
             picture.push_channel("A", coverage.clone())?;

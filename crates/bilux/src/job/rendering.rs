@@ -52,14 +52,15 @@ impl Job {
         time: Option<Duration>,
         progress: &dyn Progress,
     ) -> Result<Surfaces, Error> {
+        let begun = Instant::now();
         let labels = self.labels(progress)?;
         if !self.keeps_features() {
-            return Ok(Surfaces { features: None, labels });
+            return Ok(Surfaces { features: None, labels, time: begun.elapsed() });
         }
         let (scene, camera, integrator) = (self.scene(), self.camera(), self.integrator());
         let part = time.map(|time| time / FEATURES_PART);
         let features = bilux_transport::features(scene, camera, integrator, &self.render, part, progress)?;
-        Ok(Surfaces { features, labels })
+        Ok(Surfaces { features, labels, time: begun.elapsed() })
     }
 
     /// Takes this many other samples of one pixel, at least two, and returns the mean of each colour channel with its 95%

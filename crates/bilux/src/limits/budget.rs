@@ -68,10 +68,12 @@ pub fn with_fast_budget(scene: &Parameters, user: &mut Parameters) {
     }
 }
 
-/// Returns the part of a time limit that is left for rendering when other work takes `others`. Rendering always takes
-/// at least one sample of each pixel.
+/// Rendering gets at least one part in this many of a time limit, however long reading takes.
+const LEAST_PART: u32 = 5;
+
+/// Returns the part of a time limit that is left for rendering when other work takes `others`.
 pub(crate) fn time_for_rendering(limit: Duration, others: Duration) -> Duration {
-    limit.saturating_sub(others)
+    limit.saturating_sub(others).max(limit / LEAST_PART)
 }
 
 #[cfg(test)]
@@ -82,7 +84,7 @@ mod tests {
     fn other_work_reduces_the_time_for_rendering() {
         let [limit, short, long] = [5.0, 0.5, 9.0].map(Duration::from_secs_f32);
         assert_eq!(time_for_rendering(limit, short), Duration::from_secs_f32(4.5));
-        assert_eq!(time_for_rendering(limit, long), Duration::ZERO);
+        assert_eq!(time_for_rendering(limit, long), Duration::from_secs_f32(1.0));
     }
 
     #[test]

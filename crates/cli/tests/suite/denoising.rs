@@ -292,13 +292,20 @@ fn time_that_is_too_short_for_a_sample_gives_a_whole_picture() {
         let always = ["render", "room.toml", "--size", "400x300", "--time-limit", "0.02", "-o", output];
         bilux(path, &[&always, more].concat())
     };
-    let said = short("a.png", &[]);
+    let said = short("a.png", &["-v"]);
     let words =
         ["samples per pixel", "denoised by the built-in filter", "pixels without one are interpolated"];
     assert!(words.iter().all(|words| said.contains(words)), "{said}");
     let samples: f64 =
         said.split("400x300, ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap().parse().unwrap();
     assert!((0.01..0.9).contains(&samples), "{said}");
+    // Where the time went adds up to all of it.
+    let line = said.split("seconds for ").nth(1).and_then(|rest| rest.lines().next()).unwrap();
+    let parts: Vec<f64> = line.split([' ', ',']).filter_map(|word| word.parse().ok()).collect();
+    let seconds = said.split("per pixel, ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
+    let seconds: f64 = seconds.parse().unwrap();
+    assert_eq!(parts.len(), 7, "{line}");
+    assert!((parts.iter().sum::<f64>() - seconds).abs() < 0.1 + 0.1 * seconds, "{said}");
     // Unlike the picture of as many seconds as it takes, it cannot be made again.
     short("b.exr", &["--aov", "samples"]);
     let picture = read(path.join("b.exr")).unwrap();

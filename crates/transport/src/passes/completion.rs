@@ -3,7 +3,8 @@
 //!
 //! The samples of a first pass under a limit of time come lattice by lattice, so those that there are are spread evenly. Around each point of the finest
 //! complete lattice the light over albedo is averaged, which makes a small picture without gaps, with features of its own: it is denoised
-//! as any other. Each pixel then interpolates between the points around it, those most whose albedo, normal and depth are like
+//! as any other. Where most points of the next finer lattice have a sample too, it is that lattice, and its other points are completed
+//! from the coarser one first. Each pixel then interpolates between the points around it, those most whose albedo, normal and depth are like
 //! its own, and gets its own albedo back: joint bilateral upsampling [Kopf 2007].
 
 use crate::film::Film;
@@ -21,6 +22,9 @@ const ALIKE: [f32; 3] = [0.1, 0.3, 0.1];
 const LEAST: f32 = 1e-4;
 /// Points further away count too where those around a pixel are less alike than this in all.
 const ENOUGH: f32 = 0.05;
+
+/// A finer lattice is taken where this part of its points has a sample.
+const MOST: f64 = 0.6;
 
 /// A picture of the points of a lattice, from which all pixels of a film's window are completed.
 #[derive(Clone, Debug)]
@@ -56,8 +60,24 @@ impl<'a> Completion<'a> {
     /// The completion of a film of which all pixels have a sample whose column and row are multiples of `spacing`, and of the others some
     /// ([`crate::Rendered::spacing`]), with features of its pixels.
     pub fn new(film: &Film, spacing: u32, features: Option<&'a Features>) -> Completion<'a> {
+        let coarse = Completion::of_lattice(film, spacing.max(1), features);
+        let finer = coarse.spacing / 2;
+        let sampled = film.counts().iter().filter(|count| **count > 0).count() as f64;
+        let points = film.window().pixels() as f64 / f64::from(finer.max(1) * finer.max(1));
+        if finer == 0 || sampled < MOST * points {
+            return coarse;
+        }
+        let mut fine = Completion::of_lattice(film, finer, features);
+        let width = fine.size[0];
+        for (i, light) in fine.light.iter_mut().enumerate().filter(|(_, light)| !light.is_finite()) {
+            let [x, y] = [i as u32 % width, i as u32 / width].map(|point| point * finer);
+            *light = coarse.interpolated(&coarse.light, x, y);
+        }
+        fine
+    }
+
+    fn of_lattice(film: &Film, spacing: u32, features: Option<&'a Features>) -> Completion<'a> {
         let window = film.window();
-        let spacing = spacing.max(1);
         let features = features.filter(|features| features.window == window);
         let size = [window.width.div_ceil(spacing), window.height.div_ceil(spacing)];
         let mut completion =

@@ -76,7 +76,7 @@ pub(crate) fn all_passes(
     followers: Followers,
     before: Rendered,
 ) -> Result<Rendered, RenderError> {
-    let Rendered { film, mut counters, choice, reached, interval, batch_means, .. } = before;
+    let Rendered { film, mut counters, planning, choice, reached, interval, batch_means, .. } = before;
     let mut work = Work::new(integrator, eye, sampled, passes, followers, film);
     loop {
         pool.broadcast(|_| work.run()).into_iter().for_each(|c| counters += c);
@@ -93,7 +93,18 @@ pub(crate) fn all_passes(
         *work.is_paused.get_mut() = false;
     }
     let End { film, cancelled, cut_short, spacing } = work.finish()?;
-    Ok(Rendered { film, counters, cancelled, cut_short, spacing, choice, reached, interval, batch_means })
+    Ok(Rendered {
+        film,
+        counters,
+        cancelled,
+        cut_short,
+        spacing,
+        planning,
+        choice,
+        reached,
+        interval,
+        batch_means,
+    })
 }
 
 /// Ranges of samples that double in length, so that a first picture appears soon.

@@ -121,6 +121,7 @@ pub fn render_from(
         cancelled: false,
         cut_short: false,
         spacing: None,
+        planning: begun.elapsed(),
         choice,
         reached: None,
         interval,

@@ -218,6 +218,7 @@ impl Gathering {
             cancelled,
             cut_short: false,
             spacing: None,
+            planning: Duration::ZERO,
             choice: None,
             reached,
             interval: None,

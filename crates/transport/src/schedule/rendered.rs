@@ -6,6 +6,7 @@ use crate::film::interval::Interval;
 use crate::schedule::plan::Choice;
 use crate::schedule::stop::Reached;
 use bilux_accel::Counters;
+use std::time::Duration;
 
 /// The result of a render.
 #[derive(Clone, Debug)]
@@ -23,6 +24,8 @@ pub struct Rendered {
     /// are all those whose column and row are multiples of it; of the others only some have one ([`crate::Completion`]), and [`Film::coverage`]
     /// states where all have.
     pub spacing: Option<u32>,
+    /// Time before the first sample: that of the pilot of an integrator that chooses.
+    pub planning: Duration,
     /// The choice of an integrator that chooses.
     pub choice: Option<Choice>,
     /// State of the picture when it ended, where it could end early ([`crate::RenderSettings::stop`]).

@@ -147,6 +147,27 @@ fn a_picture_is_completed_along_its_surfaces() {
     assert!(worst(None) > 0.5, "{}", worst(None));
 }
 
+/// Seven in eight of the pixels between those of the lattice have a sample: they are seen one by one, and the others as their surface is.
+#[test]
+fn a_picture_that_is_nearly_done_keeps_its_pixels() {
+    let (width, height) = (24u32, 16u32);
+    let window = Window::whole(width, height);
+    let light = |x: u32, y: u32| Rgb::grey(if (x + y).is_multiple_of(2) { 1.0 } else { 0.25 });
+    let mut film = Film::new(width, height, 24).unwrap();
+    let places = || (0..window.pixels()).map(|i| window.position(i));
+    let is_missing = |x: u32, y: u32| (x % 2 == 1 || y % 2 == 1) && (x + 3 * y).is_multiple_of(8);
+    for (x, y) in places().filter(|(x, y)| !is_missing(*x, *y)) {
+        film.add(x, y, 0, light(x, y));
+    }
+    let completion = Completion::new(&film, 2, None);
+    assert_eq!(completion.size, [width, height]);
+    let all = completion.completed(&completion.light).unwrap();
+    for ((x, y), found) in places().zip(all) {
+        let is_right = if is_missing(x, y) { (0.25..=1.0).contains(&found.g) } else { found == light(x, y) };
+        assert!(is_right, "{x},{y}: {found:?}");
+    }
+}
+
 /// A point whose samples are all bad, and one that has more samples than that of the lattice.
 #[test]
 fn a_completion_averages_what_is_there() {

@@ -80,7 +80,7 @@ impl Shown {
 
 /// A layer as colours from 0 to 1; `None` if there is none, as after an interrupt.
 fn colours(aov: Aov, outcome: &Outcome) -> Option<Vec<Rgb>> {
-    let Surfaces { features, labels } = &outcome.surfaces;
+    let Surfaces { features, labels, .. } = &outcome.surfaces;
     let plane = |name: &str| labels.as_ref().and_then(|labels| labels.channel(name));
     match aov {
         Aov::Normal => {

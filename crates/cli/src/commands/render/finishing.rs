@@ -59,7 +59,8 @@ pub fn finish(input: &Input, job: &Job, target: &Target, build_seconds: f64) -> 
     let outcome = Arc::new(outcome);
     let extra = aov::extra(arguments, job, &outcome, &report)?;
     let layers = aov::Layers { kept: &aov::layers(arguments), extra: extra.as_ref() };
-    let denoising = written::write(input, job, &outcome, denoiser, &layers, output)?;
+    let (denoising, smoothing) = written::write(input, job, &outcome, denoiser, &layers, output)?;
+    let written = input.begun.get().elapsed();
     let is_whole = !outcome.rendered.cancelled && denoising != Denoising::CutShort;
     let overrun = time_limit::overrun(job, &outcome, [before, rendered, input.begun.get().elapsed()]);
     log::report_sample_failures(&outcome);
@@ -70,6 +71,7 @@ pub fn finish(input: &Input, job: &Job, target: &Target, build_seconds: f64) -> 
         scene: input.path,
         output,
         build_seconds,
+        times: [before, rendered, smoothing, written],
         seconds,
         total_seconds: input.begun.get().elapsed().as_secs_f64(),
         denoiser: denoiser.map(|chosen| &**chosen).filter(|_| denoising == Denoising::Done),

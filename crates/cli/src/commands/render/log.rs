@@ -9,6 +9,7 @@ use serde_json::json;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
 
 /// A picture that was rendered.
 pub struct Rendered<'a> {
@@ -18,6 +19,8 @@ pub struct Rendered<'a> {
     pub output: &'a Path,
     /// Seconds spent building acceleration structures and the like.
     pub build_seconds: f64,
+    /// The time until rendering began, and until it ended; that of denoising; and the time until the picture was written.
+    pub times: [Duration; 4],
     /// Seconds spent rendering.
     pub seconds: f64,
     /// Seconds from reading the scene to the last byte written.
@@ -110,12 +113,21 @@ impl Rendered<'_> {
             output::eprint(format_args!("{output}: {} chose {choice}", s.integrator.entry.name));
         }
         output::eprint(format_args!(
-            "{output}: {} with {}, built in {:.2} s, rendered in {:.2} s, {:.2} million rays per second",
+            "{output}: {} with {}, {:.2} million rays per second",
             s.integrator.entry.name,
             s.accel.name,
-            self.build_seconds,
-            self.seconds,
             outcome.rendered.counters.rays as f64 / self.seconds.max(1e-9) / 1e6,
+        ));
+        let [before, rendered, denoised, written] = self.times.map(|time| time.as_secs_f64());
+        let [features, pilot] =
+            [outcome.surfaces.time, outcome.rendered.planning].map(|time| time.as_secs_f64());
+        output::eprint(format_args!(
+            "{output}: seconds for reading {:.2}, building {:.2}, features {features:.2}, pilot {pilot:.2}, samples {:.2}, \
+             denoising {denoised:.2}, writing and layers {:.2}",
+            (before - self.build_seconds).max(0.0),
+            self.build_seconds,
+            (rendered - before - features - pilot).max(0.0),
+            (written - rendered - denoised).max(0.0),
         ));
         // The samples that measure the noise are also in the mean; this reports the bias where it may matter.
         if let Some(bias) =

@@ -14,7 +14,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::thread::Builder;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Interval at which it is checked whether denoising has to give way to saving what there is.
 const TICK: Duration = Duration::from_millis(20);
@@ -54,7 +54,7 @@ pub enum Denoising {
     CutShort,
 }
 
-/// Writes the picture; a partial render goes into an `.exr` with its exact sums.
+/// Writes the picture, and says how long denoising took; a partial render goes into an `.exr` with its exact sums.
 pub fn write(
     input: &Input,
     job: &Job,
@@ -62,12 +62,14 @@ pub fn write(
     denoiser: Option<&Arc<DenoiserChoice>>,
     layers: &Layers,
     output: &Path,
-) -> anyhow::Result<Denoising> {
+) -> anyhow::Result<(Denoising, Duration)> {
     let Input { arguments, common, interrupt, .. } = *input;
     let is_exr = aov::is_exr(&arguments.named(output));
     let is_part = is_exr && (arguments.is_part() || outcome.rendered.cancelled);
     let chosen = denoiser.filter(|_| !is_part);
+    let begun = Instant::now();
     let smooth = chosen.map(|chosen| denoised(outcome, chosen, interrupt)).transpose()?.flatten();
+    let time = begun.elapsed();
     let denoiser = chosen.filter(|_| smooth.is_some());
     let mut picture = match smooth {
         Some(picture) => picture,
@@ -91,9 +93,10 @@ pub fn write(
     options.quality = arguments.quality.unwrap_or(options.quality);
     warn_lost_alpha(&picture, &arguments.named(output), options.behind, common)?;
     outputs::write(output, arguments.output_format.as_deref(), &picture, &options)?;
-    Ok(match (chosen, denoiser) {
+    let denoising = match (chosen, denoiser) {
         (None, _) => Denoising::Off,
         (Some(_), Some(_)) => Denoising::Done,
         (Some(_), None) => Denoising::CutShort,
-    })
+    };
+    Ok((denoising, time))
 }
