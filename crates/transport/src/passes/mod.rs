@@ -1,6 +1,7 @@
 //! Passes over the film: all its tiles, some samples of each pixel, on all threads.
 
 pub(crate) mod completion;
+mod ending;
 pub(crate) mod features;
 pub(crate) mod illumination;
 pub(crate) mod layers;
@@ -18,9 +19,10 @@ pub(crate) mod work;
 use crate::checkpoint::{Begun, Observer, OpenPass};
 use crate::film::error::{FilmError, RenderError};
 use crate::film::failures::SamplePlace;
-use crate::film::window::{Coverage, Tile, Tiling, Window, finest_complete};
+use crate::film::window::{Tile, Tiling, Window};
 use crate::film::{Film, scale_exponent};
 use crate::integrators::pixel_integrator::PixelIntegrator;
+use crate::passes::ending::Ending;
 use crate::passes::limit::{Limit, Limited};
 use crate::sampling::camera_rays::CameraRays;
 use crate::sampling::sample_queue::{SampleQueue, SampleSink};
@@ -359,41 +361,22 @@ impl<'a> Work<'a> {
         let is_complete = self.is_complete();
         let cut_short = !is_complete && self.is_late() && !self.followers.progress.is_cancelled();
         let window = self.eye.settings.window();
-        let (mut covered, mut spacing) = (Coverage::default(), None);
-        let of_first = self.tiles_done(0);
-        let of_first = self.tiles.iter().zip(of_first);
-        let taken = of_first.filter(|(_, is_done)| *is_done).map(|(tile, _)| tile.pixels()).sum::<usize>();
-        let sampled = self.tiles.iter().map(|tile| tile.pixels()).sum::<usize>();
-        for pass in 0..self.passes.len() {
-            let samples = self.passes[pass].clone();
-            if is_complete {
-                covered.insert(window, samples);
-                continue;
-            }
-            let done = self.tiles_done(pass);
-            if !done.contains(&false) {
-                covered.insert(window, samples);
-                continue;
-            }
-            let is_spread = matches!(self.tiling, Tiling::Spread(_));
-            let finest = if is_spread { finest_complete(&self.tiles, &done) } else { Some(1) };
-            spacing = spacing.or(finest.filter(|_| is_spread));
-            // Only where the finest of all lattices is being taken are there windows of which all pixels have their sample.
-            let is_whole = |tile: &Tile| tile.step == 1 && finest.is_some_and(|finest| finest <= 2);
-            for (tile, _) in self.tiles.iter().zip(done).filter(|(tile, is_done)| *is_done && is_whole(tile))
-            {
-                covered.insert(tile.window.intersection(&window), samples.clone());
-            }
-        }
+        let done: Vec<Vec<bool>> = (0..self.passes.len()).map(|pass| self.tiles_done(pass)).collect();
+        let ending = |pass: usize| Ending { tiling: self.tiling, tiles: &self.tiles, done: &done[pass] };
         let mut film = self.film.into_inner().unwrap_or_else(PoisonError::into_inner);
-        film.coverage.extend(&covered);
-        let begun = self.iterations.into_inner().unwrap_or_else(PoisonError::into_inner).remove(&0);
-        if let Some(splats) = begun.filter(|_| cut_short && film.iterations.iter().all(|count| *count == 0)) {
-            film.add_part_of_iteration(splats, [taken, sampled])?;
+        for (pass, samples) in self.passes.iter().enumerate() {
+            film.coverage.extend(&ending(pass).covered(window, samples));
         }
-        if spacing.is_none() && !is_complete && matches!(self.tiling, Tiling::Spread(_)) {
+        let first = ending(0);
+        let begun = self.iterations.into_inner().unwrap_or_else(PoisonError::into_inner).remove(&0);
+        let is_first = film.iterations.iter().all(|count| *count == 0);
+        if let Some(splats) = begun.filter(|_| cut_short && is_first) {
+            film.add_part_of_iteration(splats, first.arrived())?;
+        }
+        if first.is_too_short() {
             film.keep_covered();
         }
-        Ok(End { film, cancelled: !is_complete && !cut_short, cut_short, spacing })
+        let (cancelled, spacing) = (!is_complete && !cut_short, first.spacing());
+        Ok(End { film, cancelled, cut_short, spacing })
     }
 }
