@@ -4,14 +4,15 @@
 //! cargo run --release -p bilux-accel --example leak_hunt -- [--rays N] [--accel NAME] [--seed N]
 //! ```
 //! The rays are spread over all meshes; by default there are a hundred million (a thousandth of that for `brute` and
-//! its variants). Without a name, every structure is tested. Prints a line of JSON for each mesh and structure, and
+//! its variants, and a hundredth for trees of whole objects). Without a name, every structure is tested. Prints a line of JSON for each mesh and structure, and
 //! one for the total; exits with 1 if a ray escaped.
 #![expect(clippy::print_stdout, reason = "a program, whose output this is")]
 
 #[path = "../tests/suite/support/mod.rs"]
 mod support;
 
-use bilux_accel::{Accelerator, Query};
+use bilux_accel::registry::BspGroup;
+use bilux_accel::{Accelerator, BuildOptions, Query};
 use rayon::prelude::*;
 use std::error::Error;
 use std::process::ExitCode;
@@ -54,13 +55,22 @@ fn leaks(structure: &dyn Accelerator, closed: &closed::Closed, seed: u64, rays: 
     (0..rays).into_par_iter().filter(escapes).map(|index| (Some(index), 1)).reduce(|| (None, 0), join)
 }
 
+/// One ray in so many is sent to a structure: slow ones get fewer.
+fn share(name: &str, options: &BuildOptions) -> u64 {
+    match (name, options.bsp_group) {
+        (name, _) if name.starts_with("brute") => 1000,
+        ("bsp", BspGroup::Objects) => 100,
+        _ => 1,
+    }
+}
+
 fn main() -> Result<ExitCode, Box<dyn Error>> {
     let arguments = Arguments::read()?;
     let meshes = closed::all();
     let chosen = |name: &str| arguments.accelerator.as_deref().is_none_or(|wanted| wanted == name);
     let mut total = (0, 0);
     for (label, name, options) in variants().into_iter().filter(|(_, name, _)| chosen(name)) {
-        let share = if name.starts_with("brute") { 1000 } else { 1 };
+        let share = share(name, &options);
         let rays = (arguments.rays / share).div_ceil(meshes.len() as u64);
         for closed in meshes {
             let structure = build_variant(name, &options, &Arc::new(closed.mesh()));
