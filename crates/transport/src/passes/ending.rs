@@ -49,3 +49,47 @@ impl Ending<'_> {
         matches!(self.tiling, Tiling::Spread(_))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ended after so many tiles of 32 x 16 pixels in squares of two by two pixels of each lattice.
+    fn ended(
+        tiling: Tiling,
+        after: impl Fn(&[Tile]) -> usize,
+    ) -> (Vec<(Window, Range<u32>)>, Option<u32>, bool) {
+        let window = Window::whole(32, 16);
+        let tiles = window.divided(tiling);
+        let count = after(&tiles);
+        let done: Vec<bool> = (0..tiles.len()).map(|i| i < count).collect();
+        let ending = Ending { tiling, tiles: &tiles, done: &done };
+        (ending.covered(window, &(2..5)).pieces().to_vec(), ending.spacing(), ending.is_too_short())
+    }
+
+    #[test]
+    fn a_film_states_windows_of_which_all_pixels_are_taken() {
+        let spread = Tiling::Spread(2);
+        let first_of =
+            |step: u32| move |tiles: &[Tile]| tiles.iter().position(|tile| tile.step == step).unwrap();
+        assert_eq!(ended(spread, |_| 1), (Vec::new(), None, true));
+        assert_eq!(ended(spread, first_of(4)), (Vec::new(), Some(8), false));
+        assert_eq!(ended(spread, |tiles| first_of(1)(tiles) - 1), (Vec::new(), Some(4), false));
+        let three = Window { x: 0, y: 0, width: 6, height: 2 };
+        assert_eq!(ended(spread, |tiles| first_of(1)(tiles) + 3), (vec![(three, 2..5)], Some(2), false));
+        let whole = vec![(Window::whole(32, 16), 2..5)];
+        assert_eq!(ended(spread, <[Tile]>::len), (whole.clone(), None, false));
+        assert_eq!(ended(Tiling::Squares(2), |_| 3), (vec![(three, 2..5)], None, false));
+        assert_eq!(ended(Tiling::Squares(2), <[Tile]>::len), (whole, None, false));
+    }
+
+    #[test]
+    fn light_subpaths_are_counted_by_pixels() {
+        let (tiling, window) = (Tiling::Spread(2), Window::whole(32, 16));
+        let tiles = window.divided(tiling);
+        // All of the coarsest lattice, 4 x 2 pixels, and one tile of the next, whose four pixels lack one that was taken.
+        let coarsest = tiles.iter().filter(|tile| tile.step == 8).count();
+        let done: Vec<bool> = (0..tiles.len()).map(|i| i <= coarsest).collect();
+        assert_eq!(Ending { tiling, tiles: &tiles, done: &done }.arrived(), [11, 512]);
+    }
+}

@@ -5,11 +5,11 @@ use crate::common::{built, effort, integrator, mixed, shoot, without_mirrors};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Scene, Spec};
 use bilux_transport::{
-    Completion, Features, Film, Observer, PixelIntegrator, RenderSettings, Silent, Standing, Stop, Window,
-    features, integrators, render_from,
+    Completion, Features, Film, Observer, PixelIntegrator, Progress, RenderSettings, Silent, Standing, Stop,
+    Window, features, integrators, render, render_from,
 };
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::time::{Duration, Instant};
 
 /// No time at all: only what is taken whatever time it is.
 fn hurried(width: u32, height: u32) -> RenderSettings {
@@ -203,6 +203,53 @@ fn features_of_pixels_that_time_left_are_those_beside_them() {
     assert!(of(Some(Duration::from_secs(1000)), 1) == whole);
 }
 
+/// Takes long for each tile after the first ones.
+struct Slows(AtomicU32);
+
+impl Progress for Slows {
+    fn advance(&self, _samples: u64, _rays: u64) {
+        if self.0.fetch_add(1, Ordering::Relaxed) > 60 {
+            std::thread::sleep(Duration::from_millis(300));
+        }
+    }
+
+    fn is_cancelled(&self) -> bool {
+        false
+    }
+}
+
+/// A pass that is expected to fit into the time, and then does not.
+#[test]
+fn time_ends_a_later_pass_too() {
+    let scene = built(&mixed());
+    let stop = Stop { noise: None, time_limit: Some(Duration::from_secs(2)) };
+    for name in ["path", "bdpt"] {
+        let settings =
+            RenderSettings { stop, threads: 2, batch_means: true, ..RenderSettings::new(64, 64, 9000) };
+        let (camera, slows) = (&*scene.cameras()[0].1, Slows(AtomicU32::new(0)));
+        let begun = Instant::now();
+        let cut = render(&scene, camera, &*integrator(name), &settings, &slows).unwrap();
+        assert!(begun.elapsed() < Duration::from_secs(8), "{name}: {:?}", begun.elapsed());
+        assert!(cut.cut_short && !cut.cancelled && cut.spacing.is_none(), "{name}");
+        let (spp, counts) = (cut.reached.unwrap().spp, cut.film.counts());
+        let [least, most] = [counts.iter().min(), counts.iter().max()].map(|count| *count.unwrap());
+        assert!(least == spp && most > spp, "{name}: {least} to {most} samples, {spp} of each");
+        // The coverage states what the pixels have.
+        let stated = |(x, y): (u32, u32)| {
+            let pieces = cut.film.coverage().pieces().iter();
+            let there = pieces.filter(|(window, _)| window.index(x, y).is_some());
+            there.map(|(_, samples)| samples.len() as u32).sum::<u32>()
+        };
+        let place = |i: usize| cut.film.window().position(i);
+        assert!((0..counts.len()).all(|i| stated(place(i)) == counts[i]), "{name}");
+        // Those samples are the first ones of a picture that takes as many.
+        let whole = RenderSettings { stop: Stop::default(), spp, samples: 0..spp, ..settings };
+        let whole = shoot(&scene, &*integrator(name), &whole);
+        let (x, y) = place(counts.iter().position(|count| *count == spp).unwrap());
+        assert_eq!(cut.film.sampled(x, y), whole.film.sampled(x, y), "{name}");
+    }
+}
+
 /// Wants a checkpoint until there is one.
 #[derive(Default)]
 struct Keeper(AtomicBool);
@@ -229,4 +276,10 @@ fn a_choice_in_a_hurry_keeps_no_checkpoint() {
     let settings = RenderSettings::new(40, 32, 1);
     let unlimited = shoot(&scene, &*auto, &settings);
     assert_eq!(shoot(&scene, &*auto, &RenderSettings { stop, ..settings }).choice, unlimited.choice);
+    // One sample in eight estimates the same, but for noise.
+    for (a, b) in hurried.choice.unwrap().candidates.iter().zip(unlimited.choice.unwrap().candidates) {
+        let (cost, error) = (a.nanoseconds / b.nanoseconds, a.error / b.error);
+        assert!((0.8..1.25).contains(&cost) && (0.2..5.0).contains(&error), "{}: {cost}, {error}", a.name);
+        assert!((a.lost - b.lost).abs() < 0.05, "{}: {} and {}", a.name, a.lost, b.lost);
+    }
 }
