@@ -54,11 +54,11 @@ impl Ending<'_> {
 mod tests {
     use super::*;
 
+    /// The pieces that are stated, the spacing, and whether the time was too short.
+    type Ended = (Vec<(Window, Range<u32>)>, Option<u32>, bool);
+
     /// Ended after so many tiles of 32 x 16 pixels in squares of two by two pixels of each lattice.
-    fn ended(
-        tiling: Tiling,
-        after: impl Fn(&[Tile]) -> usize,
-    ) -> (Vec<(Window, Range<u32>)>, Option<u32>, bool) {
+    fn ended(tiling: Tiling, after: impl Fn(&[Tile]) -> usize) -> Ended {
         let window = Window::whole(32, 16);
         let tiles = window.divided(tiling);
         let count = after(&tiles);
