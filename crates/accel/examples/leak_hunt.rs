@@ -4,7 +4,7 @@
 //! cargo run --release -p bilux-accel --example leak_hunt -- [--rays N] [--accel NAME] [--seed N]
 //! ```
 //! The rays are spread over all meshes; by default there are a hundred million (a thousandth of that for `brute` and
-//! its variants, and a hundredth for trees of whole objects). Without a name, every structure is tested. Prints a line of JSON for each mesh and structure, and
+//! its variants, a hundredth for trees of whole objects, and a tenth for a needle). Without a name, every structure is tested. Prints a line of JSON for each mesh and structure, and
 //! one for the total; exits with 1 if a ray escaped.
 #![expect(clippy::print_stdout, reason = "a program, whose output this is")]
 
@@ -55,11 +55,12 @@ fn leaks(structure: &dyn Accelerator, closed: &closed::Closed, seed: u64, rays: 
     (0..rays).into_par_iter().filter(escapes).map(|index| (Some(index), 1)).reduce(|| (None, 0), join)
 }
 
-/// One ray in so many is sent to a structure: slow ones get fewer.
-fn share(name: &str, options: &BuildOptions) -> u64 {
+/// One ray in so many is sent to a structure: slow ones get fewer, and so does a mesh most of whose triangles each ray comes close to.
+fn share(name: &str, options: &BuildOptions, mesh: &str) -> u64 {
     match (name, options.bsp_group) {
         (name, _) if name.starts_with("brute") => 1000,
         ("bsp", BspGroup::Objects) => 100,
+        _ if mesh == "needle" => 10,
         _ => 1,
     }
 }
@@ -70,9 +71,9 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     let chosen = |name: &str| arguments.accelerator.as_deref().is_none_or(|wanted| wanted == name);
     let mut total = (0, 0);
     for (label, name, options) in variants().into_iter().filter(|(_, name, _)| chosen(name)) {
-        let share = share(name, &options);
-        let rays = (arguments.rays / share).div_ceil(meshes.len() as u64);
         for closed in meshes {
+            let share = share(name, &options, closed.name);
+            let rays = (arguments.rays / share).div_ceil(meshes.len() as u64);
             let structure = build_variant(name, &options, &Arc::new(closed.mesh()));
             let start = Instant::now();
             let (first, count) = leaks(structure.as_ref(), closed, arguments.seed, rays);
