@@ -142,7 +142,9 @@ impl Window {
     pub(crate) fn divided(&self, tiling: Tiling) -> Vec<Tile> {
         let of_lattice = |(side, step, coarser): (u32, u32, u32)| {
             let tile = move |window| Tile { window, step, coarser };
-            self.tiles(side.saturating_mul(step)).into_iter().map(tile)
+            // A narrow window has no pixels of some lattices.
+            let has_pixels = |tile: &Tile| tile.positions().next().is_some();
+            self.tiles(side.saturating_mul(step)).into_iter().map(tile).filter(has_pixels)
         };
         match tiling {
             Tiling::Squares(side) => of_lattice((side, 1, 0)).collect(),

@@ -42,6 +42,12 @@ fn the_samples_that_there_are_lie_on_a_lattice() {
     }
 }
 
+#[test]
+fn a_film_of_one_pixel_has_its_sample_at_once() {
+    let only = shoot(&built(&mixed()), &*integrator("path"), &hurried(1, 1));
+    assert!(!only.cut_short && only.spacing.is_none() && only.film.samples(0, 0) == 1);
+}
+
 /// With enough time a picture is that of as many samples without a limit, to the bit.
 #[test]
 fn spread_samples_are_those_of_any_other_order() {
